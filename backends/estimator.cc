@@ -1,0 +1,23 @@
+#include "backends/estimator.h"
+
+namespace duet {
+
+const char* EstimatorStatusName(EstimatorStatus status) {
+  switch (status) {
+    case EstimatorStatus::kInitializing:
+      return "initializing";
+    case EstimatorStatus::kTracking:
+      return "tracking";
+    case EstimatorStatus::kDeadReckoning:
+      return "dead reckoning";
+    case EstimatorStatus::kFailed:
+      return "failed";
+  }
+  return "unknown";
+}
+
+double ImuHorizon(const SharedOptions& options) {
+  return options.max_abs_t_d_s + 0.5 * options.max_abs_t_r_s;
+}
+
+}  // namespace duet

@@ -1,0 +1,7 @@
+#pragma once
+
+namespace duet {
+
+struct MsckfOptions {};
+
+}  // namespace duet

@@ -1,0 +1,7 @@
+#pragma once
+
+namespace duet {
+
+struct WindowOptions {};
+
+}  // namespace duet

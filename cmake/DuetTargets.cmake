@@ -1,0 +1,54 @@
+# duet_add_library(NAME SOURCES ... LINK ... [PRIVATE_LINK ...]): one library a folder, duet::NAME.
+# duet_add_test(NAME SOURCES ... LINK ...): one GoogleTest program, every case a CTest test.
+
+add_library(duet_warnings INTERFACE)
+target_compile_options(duet_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion
+                       -Wno-sign-conversion $<$<BOOL:${DUET_WERROR}>:-Werror>)
+
+if(DUET_PRECOMPILED_HEADERS)
+  file(WRITE "${PROJECT_BINARY_DIR}/precompiled/empty.cc" "")
+  add_library(duet_precompiled OBJECT "${PROJECT_BINARY_DIR}/precompiled/empty.cc")
+  target_link_libraries(duet_precompiled PRIVATE Eigen3::Eigen)
+  target_precompile_headers(duet_precompiled PRIVATE
+    <Eigen/Dense> <algorithm> <array> <cmath> <cstdint> <functional> <map> <memory>
+    <optional> <span> <sstream> <string> <string_view> <unordered_map> <vector>)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(duet_precompiled PRIVATE -fpch-preprocess)
+  endif()
+endif()
+
+function(duet_configure_target target)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>)
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:duet_warnings>)
+  if(DUET_PRECOMPILED_HEADERS)
+    target_precompile_headers(${target} REUSE_FROM duet_precompiled)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+      target_compile_options(${target} PRIVATE -fpch-preprocess)
+    endif()
+  endif()
+endfunction()
+
+function(duet_add_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  add_library(duet_${name} STATIC ${ARG_SOURCES})
+  add_library(duet::${name} ALIAS duet_${name})
+  set_target_properties(duet_${name} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(duet_${name} INTERFACE
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/duet>)
+  duet_configure_target(duet_${name})
+  target_link_libraries(duet_${name} PUBLIC ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK})
+  set_property(GLOBAL APPEND PROPERTY DUET_LIBRARIES duet_${name})
+endfunction()
+
+function(duet_add_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  duet_configure_target(${name})
+  target_link_libraries(${name} PRIVATE ${ARG_LINK} duet_test_main GTest::gmock GTest::gtest)
+  if(NOT ARG_LABELS)
+    set(ARG_LABELS unit)
+  endif()
+  add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}")
+endfunction()
