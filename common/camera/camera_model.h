@@ -48,8 +48,15 @@ class CameraModel {
                              ParameterJacobian* J_uv_parameters = nullptr) const;
 
   /// The direction (x, y, 1) that is seen at `uv`, by Newton's method on the distortion. Nothing
-  /// where it does not converge to 1e-10 or leaves the branch that contains the optical axis.
+  /// where it does not converge to 1e-10 (of the distorted direction, 1) or where no such direction
+  /// lies on the branch that contains the optical axis: there the radial distortion still grows
+  /// with the angle (max_radius()); further out a second direction has the same pixel.
   [[nodiscard]] std::optional<Eigen::Vector3d> Unproject(const Eigen::Vector2d& uv) const;
+
+  /// The largest sqrt(x^2 + y^2) / z up to which the radial distortion grows with it; infinite
+  /// where it always does. Project does not look at it: a point further out still has its formula's
+  /// pixel.
+  [[nodiscard]] double max_radius() const { return max_radius_; }
 
   /// True inside [-0.5 - margin, size - 0.5 + margin).
   [[nodiscard]] bool Contains(const Eigen::Vector2d& uv, double margin_px = 0.0) const;
@@ -58,6 +65,7 @@ class CameraModel {
   DistortionModel model_ = DistortionModel::kRadialTangential;
   int width_px_ = 0;
   int height_px_ = 0;
+  double max_radius_ = 0.0;
   Parameters parameters_;
 };
 
