@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "backends/estimator.h"
+#include "common/support/text_file.h"
+
+namespace duet {
+
+/// How an estimator's run went, for the manifest and the program's last line.
+struct RunSummary {
+  int frames = 0;   ///< fed
+  int waiting = 0;  ///< before the start
+  int tracking = 0;
+  int dead_reckoning = 0;
+  int skipped = 0;                         ///< their interval was not covered by the IMU
+  std::optional<Timestamp> first_instant;  ///< of the states written
+  std::optional<Timestamp> last_instant;
+  std::string failure;  ///< empty: it did not fail
+  std::optional<Timestamp> failure_instant;
+};
+
+/// Writes what an estimator says, frame by frame, into a folder (docs/formats.md):
+/// trajectory.tum, states.csv, features.csv and, when asked, covariance.csv. All are canonical: the
+/// same bytes for the same input.
+class RunRecorder {
+ public:
+  RunRecorder(const std::filesystem::path& folder, const CalibrationLayout& layout,
+              bool with_covariance);
+
+  /// A frame that came before the start.
+  void AddWaiting(const TrackFrameSet& frames);
+  void Add(const TrackFrameSet& frames, const EstimatorOutput& output);
+  /// Throws OutputError where something could not be written.
+  void Close();
+
+  [[nodiscard]] const RunSummary& summary() const { return summary_; }
+
+ private:
+  void AddState(const EstimatorOutput& output);
+  void AddCovariance(const EstimatorOutput& output);
+  void AddFeatures(const TrackFrameSet& frames, const char* status, const FeatureCounts& counts);
+
+  CalibrationLayout layout_;
+  TextFileWriter trajectory_;
+  TextFileWriter states_;
+  TextFileWriter features_;
+  std::optional<TextFileWriter> covariance_;
+  RunSummary summary_;
+  std::string row_;
+};
+
+}  // namespace duet

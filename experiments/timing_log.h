@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/support/stage_timer.h"
+#include "common/support/timestamp.h"
+
+namespace duet {
+
+/// Rows of timing.csv: thread CPU time in ms, one row a frame, one column a stage. Columns appear
+/// with their first use; a stage that a frame did not have counts 0.
+class TimingLog {
+ public:
+  void StartFrame(Timestamp timestamp);
+  void Add(const std::string& column, double cpu_ms);
+  /// Adds "prefix.stage" for each stage.
+  void Add(const std::string& prefix, const std::vector<StageTimer::Stage>& stages);
+
+  void Write(const std::filesystem::path& path) const;
+
+ private:
+  struct Row {
+    Timestamp timestamp;
+    std::vector<double> cpu_ms;
+  };
+  std::vector<std::string> columns_;
+  std::vector<Row> rows_;
+};
+
+/// One column of a timing.csv, empty where there is no such column. Throws InputError.
+[[nodiscard]] std::vector<double> ReadTimingColumn(const std::filesystem::path& path,
+                                                   const std::string& column);
+
+}  // namespace duet
