@@ -2,6 +2,51 @@
 
 namespace duet {
 
-struct MsckfOptions {};
+/// The filter's own settings (thesis chapter 6). What it shares with the window is in
+/// SharedOptions.
+struct MsckfOptions {
+  int max_clones = 11;
+  bool first_estimates = true;
+  int min_observations = 4;
+  int max_landmarks_per_update = 40;
+  bool gate = true;
+  double gate_probability = 0.95;
+  int dead_reckoning_after_frames = 20;
+  double max_velocity_m_per_s = 100.0;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Field("max_clones", &max_clones,
+            {.doc = "Poses in the sliding window, the newest frame's included (m of 6.2.2).",
+             .min = 3,
+             .max = 100});
+    v.Field("first_estimates", &first_estimates,
+            {.doc = "Evaluate Jacobians at the first estimates of every frame's orientation, "
+                    "position and velocity: the filter then keeps its four unobservable directions "
+                    "(position and heading) and does not become overconfident in them."});
+    v.Field("min_observations", &min_observations,
+            {.doc = "A track that ended with fewer observations (all cameras) is not used.",
+             .min = 2,
+             .max = 100});
+    v.Field("max_landmarks_per_update", &max_landmarks_per_update,
+            {.doc = "Most landmarks in one frame's update. Tracks that ended come first, then those "
+                    "that span the window, longest first; of the others that span the window only "
+                    "the oldest observation is lost.",
+             .min = 1,
+             .max = 2000});
+    v.Field("gate", &gate, {.doc = "Refuse landmarks by the chi-squared test (6.24 to 6.26)."});
+    v.Field("gate_probability", &gate_probability,
+            {.doc = "Share of good landmarks that the chi-squared test lets pass.",
+             .min = 0.5,
+             .max = 0.999999});
+    v.Field("dead_reckoning_after_frames", &dead_reckoning_after_frames,
+            {.doc = "So many frames without an update are reported as dead reckoning.",
+             .unit = "frames",
+             .min = 1,
+             .max = 1e6});
+    v.Field("max_velocity_m_per_s", &max_velocity_m_per_s,
+            {.doc = "A faster state is reported as a failure.", .unit = "m/s", .min = 1});
+  }
+};
 
 }  // namespace duet

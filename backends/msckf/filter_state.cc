@@ -1,0 +1,91 @@
+#include "backends/msckf/filter_state.h"
+
+#include <algorithm>
+
+#include "common/support/logging.h"
+
+namespace duet {
+
+FilterState::FilterState(const RigCalibration& rig, const CalibrationPriors& priors, int max_clones)
+    : layout_(priors, rig), max_clones_(max_clones), rig_(rig) {
+  const int capacity = kNavSize + layout_.size() + kCloneSize * max_clones;
+  P_ = Eigen::MatrixXd::Zero(capacity, capacity);
+  clones_.reserve(max_clones);
+}
+
+void FilterState::Start(const InitialCondition& initial) {
+  inertial_ = initial.state;
+  nav_fej_ = initial.state.nav;
+  clones_.clear();
+  P_.setZero();
+  P_.topLeftCorner<kNavSize, kNavSize>() = initial.covariance;
+  P_.diagonal().segment(CalibrationOffset(), layout_.size()) =
+      layout_.PriorSigmas().array().square();
+}
+
+int FilterState::CloneIndex(std::uint64_t id) const {
+  const auto it = std::lower_bound(clones_.begin(), clones_.end(), id,
+                                   [](const Clone& clone, std::uint64_t x) { return clone.id < x; });
+  CHECK(it != clones_.end() && it->id == id) << "clone " << id << " is not in the window";
+  return static_cast<int>(it - clones_.begin());
+}
+
+void FilterState::SetPropagated(const NavState& nav, Timestamp instant) {
+  inertial_.nav = nav;
+  inertial_.instant = instant;
+  nav_fej_ = nav;
+}
+
+void FilterState::Augment(double t_d_at_instant_s) {
+  CHECK_LT(static_cast<int>(clones_.size()), max_clones_);
+  DuplicateComponents(P_, size(), 0, kCloneSize);
+  Clone clone;
+  clone.id = next_clone_id_++;
+  clone.instant = inertial_.instant;
+  clone.t_d_at_instant_s = t_d_at_instant_s;
+  clone.nav = inertial_.nav;
+  clone.nav_fej = nav_fej_;
+  clones_.push_back(std::move(clone));
+}
+
+void FilterState::RemoveClone(int clone) {
+  RemoveComponents(P(), CloneOffset(clone), kCloneSize);
+  clones_.erase(clones_.begin() + clone);
+}
+
+void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& dx, double max_abs_t_d_s,
+                          double max_abs_t_r_s) {
+  inertial_ = BoxPlus(inertial_, Vector15d(dx.head<kNavSize>()));
+  if (layout_.size() > 0) {
+    rig_ = BoxPlus(rig_, layout_, dx.segment(CalibrationOffset(), layout_.size()));
+    if (layout_.OffsetOf(CalibrationBlock::kTimeOffset) >= 0) {
+      rig_.t_d_s = std::clamp(rig_.t_d_s, -max_abs_t_d_s, max_abs_t_d_s);
+    }
+    if (layout_.OffsetOf(CalibrationBlock::kReadoutTime) >= 0) {
+      rig_.t_r_s = std::clamp(rig_.t_r_s, -max_abs_t_r_s, max_abs_t_r_s);
+    }
+  }
+  for (int i = 0; i < static_cast<int>(clones_.size()); ++i) {
+    clones_[i].nav = BoxPlus(clones_[i].nav, Vector9d(dx.segment<kCloneSize>(CloneOffset(i))));
+  }
+}
+
+void RemoveComponents(Eigen::Ref<Eigen::MatrixXd> P, int first, int count) {
+  const auto n = P.rows();
+  const auto after = n - first - count;
+  // Ascending copies within a column: the source always lies ahead of what has been written.
+  for (Eigen::Index j = 0; j < n - count; ++j) {
+    const auto from = j < first ? j : j + count;
+    for (Eigen::Index i = 0; i < first; ++i) P(i, j) = P(i, from);
+    for (Eigen::Index i = first; i < first + after; ++i) P(i, j) = P(i + count, from);
+  }
+}
+
+void DuplicateComponents(Eigen::Ref<Eigen::MatrixXd> P, int n, int first, int count) {
+  CHECK_LE(n + count, P.rows());
+  P.block(n, 0, count, n) = P.block(first, 0, count, n);
+  P.block(0, n, n, count) = P.block(0, first, n, count);
+  P.block(n, n, count, count) = P.block(first, first, count, count);
+}
+
+}  // namespace duet

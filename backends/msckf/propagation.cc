@@ -1,0 +1,56 @@
+#include "backends/msckf/propagation.h"
+
+namespace duet {
+namespace {
+
+constexpr int kNav = 9;
+constexpr int kInertial = 15;
+
+/// Columns of Gamma that belong to an estimated T matrix, -1 for other blocks.
+int GammaColumn(CalibrationBlock block) {
+  switch (block) {
+    case CalibrationBlock::kTg:
+      return 0;
+    case CalibrationBlock::kTs:
+      return 9;
+    case CalibrationBlock::kTa:
+      return 18;
+    default:
+      return -1;
+  }
+}
+
+}  // namespace
+
+void PropagateCovariance(const Transition& transition, const CalibrationLayout& layout,
+                         Eigen::Ref<Eigen::MatrixXd> P, PropagationWorkspace* workspace) {
+  // F = the rows of (theta, p, v); the T matrices come first in the calibration.
+  int width = kInertial;
+  for (const CalibrationLayout::Entry& entry : layout.entries()) {
+    if (GammaColumn(entry.block) >= 0) width = kInertial + entry.offset + entry.size;
+  }
+  auto& F = workspace->F;
+  F.setZero(kNav, width);
+  F.leftCols<kInertial>() = transition.Phi.topRows<kNav>();
+  for (const CalibrationLayout::Entry& entry : layout.entries()) {
+    const int column = GammaColumn(entry.block);
+    if (column < 0) continue;
+    F.middleCols<9>(kInertial + entry.offset) = transition.Gamma.middleCols<9>(column);
+  }
+
+  const auto n = P.rows();
+  auto& F_P = workspace->F_P;
+  F_P.resize(kNav, n);
+  F_P.noalias() = F * P.topRows(width);
+  Eigen::Matrix<double, kNav, kNav> corner;
+  corner.noalias() = F_P.leftCols(width) * F.transpose();
+  P.topLeftCorner<kNav, kNav>() =
+      0.5 * (corner + corner.transpose()) + transition.Q.topLeftCorner<kNav, kNav>();
+  P.topRightCorner(kNav, n - kNav) = F_P.rightCols(n - kNav);
+  P.block<kNav, kInertial - kNav>(0, kNav) += transition.Q.topRightCorner<kNav, kInertial - kNav>();
+  P.bottomLeftCorner(n - kNav, kNav) = P.topRightCorner(kNav, n - kNav).transpose();
+  P.block<kInertial - kNav, kInertial - kNav>(kNav, kNav) +=
+      transition.Q.bottomRightCorner<kInertial - kNav, kInertial - kNav>();
+}
+
+}  // namespace duet

@@ -1,0 +1,230 @@
+#include "common/measurement/calibration.h"
+
+#include <glog/logging.h>
+
+#include "common/geometry/so3.h"
+#include "common/imu/imu_delta.h"
+
+namespace duet {
+namespace {
+
+constexpr int kBlockKinds = 9;
+
+// The order of DESIGN.md section 3: IMU, then camera by camera, then the times.
+template <class Function>
+void ForEachBlock(const RigCalibration& rig, Function&& function) {
+  function(CalibrationBlock::kTg, -1, 9);
+  function(CalibrationBlock::kTs, -1, 9);
+  function(CalibrationBlock::kTa, -1, 9);
+  for (int c = 0; c < static_cast<int>(rig.cameras.size()); ++c) {
+    function(CalibrationBlock::kExtrinsicTranslation, c, 3);
+    function(CalibrationBlock::kExtrinsicRotation, c, 3);
+    function(CalibrationBlock::kIntrinsics, c, CameraModel::kPinholeParameters);
+    function(CalibrationBlock::kDistortion, c, rig.cameras[c].model.distortion_count());
+  }
+  function(CalibrationBlock::kTimeOffset, -1, 1);
+  function(CalibrationBlock::kReadoutTime, -1, 1);
+}
+
+struct Choice {
+  bool estimated;
+  double sigma;
+};
+
+Choice ChoiceOf(const CalibrationPriors& p, CalibrationBlock block) {
+  switch (block) {
+    case CalibrationBlock::kTg:
+      return {p.estimate_T_g, p.sigma_T_g};
+    case CalibrationBlock::kTs:
+      return {p.estimate_T_s, p.sigma_T_s};
+    case CalibrationBlock::kTa:
+      return {p.estimate_T_a, p.sigma_T_a};
+    case CalibrationBlock::kExtrinsicTranslation:
+      return {p.estimate_p_CB, p.sigma_p_CB_m};
+    case CalibrationBlock::kExtrinsicRotation:
+      return {p.estimate_R_CB, p.sigma_R_CB_rad};
+    case CalibrationBlock::kIntrinsics:
+      return {p.estimate_intrinsics, p.sigma_intrinsics_px};
+    case CalibrationBlock::kDistortion:
+      return {p.estimate_distortion, p.sigma_distortion};
+    case CalibrationBlock::kTimeOffset:
+      return {p.estimate_t_d, p.sigma_t_d_s};
+    case CalibrationBlock::kReadoutTime:
+      return {p.estimate_t_r, p.sigma_t_r_s};
+  }
+  LOG(FATAL) << "unknown calibration block";
+}
+
+// Where a block of T matrices starts among the 27 numbers; -1 for other blocks.
+int ImuOffset(CalibrationBlock block) {
+  switch (block) {
+    case CalibrationBlock::kTg:
+      return 0;
+    case CalibrationBlock::kTs:
+      return 9;
+    case CalibrationBlock::kTa:
+      return 18;
+    default:
+      return -1;
+  }
+}
+
+// Value of a block that is a plain vector (all but R_CB).
+Eigen::VectorXd VectorOf(const RigCalibration& rig, const CalibrationLayout::Entry& e) {
+  switch (e.block) {
+    case CalibrationBlock::kTg:
+    case CalibrationBlock::kTs:
+    case CalibrationBlock::kTa:
+      return ToVector(rig.imu).segment<9>(ImuOffset(e.block));
+    case CalibrationBlock::kExtrinsicTranslation:
+      return rig.cameras[e.camera].p_CB;
+    case CalibrationBlock::kIntrinsics:
+      return rig.cameras[e.camera].model.parameters().head<CameraModel::kPinholeParameters>();
+    case CalibrationBlock::kDistortion:
+      return rig.cameras[e.camera].model.parameters().tail(e.size);
+    case CalibrationBlock::kTimeOffset:
+      return Eigen::VectorXd::Constant(1, rig.t_d_s);
+    case CalibrationBlock::kReadoutTime:
+      return Eigen::VectorXd::Constant(1, rig.t_r_s);
+    case CalibrationBlock::kExtrinsicRotation:
+      break;
+  }
+  LOG(FATAL) << "a rotation is no vector";
+}
+
+void AddToBlock(const CalibrationLayout::Entry& e, const Eigen::VectorXd& d, RigCalibration* rig) {
+  switch (e.block) {
+    case CalibrationBlock::kTg:
+    case CalibrationBlock::kTs:
+    case CalibrationBlock::kTa: {
+      Eigen::Matrix<double, 27, 1> vector = ToVector(rig->imu);
+      vector.segment<9>(ImuOffset(e.block)) += d;
+      rig->imu = ImuCalibrationFromVector(vector);
+      return;
+    }
+    case CalibrationBlock::kExtrinsicTranslation:
+      rig->cameras[e.camera].p_CB += d;
+      return;
+    case CalibrationBlock::kExtrinsicRotation: {
+      CameraCalibration& camera = rig->cameras[e.camera];
+      camera.R_CB = BoxPlus(camera.R_CB, Eigen::Vector3d(d));
+      return;
+    }
+    case CalibrationBlock::kIntrinsics:
+    case CalibrationBlock::kDistortion: {
+      CameraModel& model = rig->cameras[e.camera].model;
+      CameraModel::Parameters parameters = model.parameters();
+      const bool pinhole = e.block == CalibrationBlock::kIntrinsics;
+      parameters.segment(pinhole ? 0 : CameraModel::kPinholeParameters, e.size) += d;
+      model.set_parameters(parameters);
+      return;
+    }
+    case CalibrationBlock::kTimeOffset:
+      rig->t_d_s += d[0];
+      return;
+    case CalibrationBlock::kReadoutTime:
+      rig->t_r_s += d[0];
+      return;
+  }
+}
+
+std::vector<std::string> NamesOf(const CalibrationLayout::Entry& e) {
+  const auto matrix = [](const std::string& name) {
+    std::vector<std::string> names;
+    for (int i = 1; i <= 3; ++i) {
+      for (int j = 1; j <= 3; ++j) names.push_back(name + std::to_string(10 * i + j));
+    }
+    return names;
+  };
+  const std::string cam = "cam" + std::to_string(e.camera) + ".";
+  switch (e.block) {
+    case CalibrationBlock::kTg:
+      return matrix("T_g.");
+    case CalibrationBlock::kTs:
+      return matrix("T_s.");
+    case CalibrationBlock::kTa:
+      return matrix("T_a.");
+    case CalibrationBlock::kExtrinsicTranslation:
+      return {cam + "p_CB.x", cam + "p_CB.y", cam + "p_CB.z"};
+    case CalibrationBlock::kExtrinsicRotation:
+      return {cam + "R_CB.x", cam + "R_CB.y", cam + "R_CB.z"};
+    case CalibrationBlock::kIntrinsics:
+      return {cam + "fx", cam + "fy", cam + "ox", cam + "oy"};
+    case CalibrationBlock::kDistortion:
+      if (e.size == 5) return {cam + "k1", cam + "k2", cam + "t1", cam + "t2", cam + "k3"};
+      return {cam + "k1", cam + "k2", cam + "k3", cam + "k4"};
+    case CalibrationBlock::kTimeOffset:
+      return {"t_d"};
+    case CalibrationBlock::kReadoutTime:
+      return {"t_r"};
+  }
+  return {};
+}
+
+}  // namespace
+
+CalibrationLayout::CalibrationLayout(const CalibrationPriors& priors, const RigCalibration& rig)
+    : camera_count_(static_cast<int>(rig.cameras.size())) {
+  offset_of_.assign(kBlockKinds * (camera_count_ + 1), -1);
+  ForEachBlock(rig, [&](CalibrationBlock block, int camera, int size) {
+    const Choice choice = ChoiceOf(priors, block);
+    if (!choice.estimated) return;
+    entries_.push_back({block, camera, size_, size, choice.sigma});
+    offset_of_[static_cast<int>(block) * (camera_count_ + 1) + camera + 1] = size_;
+    size_ += size;
+  });
+}
+
+int CalibrationLayout::OffsetOf(CalibrationBlock block, int camera) const {
+  if (offset_of_.empty()) return -1;
+  return offset_of_[static_cast<int>(block) * (camera_count_ + 1) + camera + 1];
+}
+
+Eigen::VectorXd CalibrationLayout::PriorSigmas() const {
+  Eigen::VectorXd sigmas(size_);
+  for (const Entry& e : entries_) sigmas.segment(e.offset, e.size).setConstant(e.sigma);
+  return sigmas;
+}
+
+std::vector<std::string> CalibrationLayout::ComponentNames() const {
+  std::vector<std::string> names;
+  for (const Entry& e : entries_) {
+    for (std::string& name : NamesOf(e)) names.push_back(std::move(name));
+  }
+  return names;
+}
+
+RigCalibration BoxPlus(const RigCalibration& rig, const CalibrationLayout& layout,
+                       const Eigen::Ref<const Eigen::VectorXd>& error) {
+  CHECK_EQ(error.size(), layout.size());
+  RigCalibration result = rig;
+  for (const auto& e : layout.entries()) AddToBlock(e, error.segment(e.offset, e.size), &result);
+  return result;
+}
+
+Eigen::VectorXd BoxMinus(const RigCalibration& a, const RigCalibration& b,
+                         const CalibrationLayout& layout) {
+  Eigen::VectorXd error(layout.size());
+  for (const auto& e : layout.entries()) {
+    if (e.block == CalibrationBlock::kExtrinsicRotation) {
+      error.segment<3>(e.offset) = BoxMinus(a.cameras[e.camera].R_CB, b.cameras[e.camera].R_CB);
+    } else {
+      error.segment(e.offset, e.size) = VectorOf(a, e) - VectorOf(b, e);
+    }
+  }
+  return error;
+}
+
+Eigen::VectorXd ComponentValues(const RigCalibration& rig, const CalibrationLayout& layout) {
+  Eigen::VectorXd values(layout.size());
+  for (const auto& e : layout.entries()) {
+    if (e.block == CalibrationBlock::kExtrinsicRotation) {
+      values.segment<3>(e.offset) = Log(rig.cameras[e.camera].R_CB);
+    } else {
+      values.segment(e.offset, e.size) = VectorOf(rig, e);
+    }
+  }
+  return values;
+}
+
+}  // namespace duet
