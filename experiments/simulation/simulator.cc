@@ -1,0 +1,249 @@
+#include "experiments/simulation/simulator.h"
+
+#include <glog/logging.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "common/geometry/so3.h"
+#include "common/support/input_error.h"
+#include "experiments/simulation/track_simulator.h"
+
+namespace duet {
+namespace {
+
+// Late enough that a stamp kept in a double would show: 1.4e18 ns has a spacing of 256 ns there.
+constexpr Timestamp kEpoch = 1'400'000'000'000'000'000;
+// The IMU before the first and after the last frame: room for |t_d|, t_r and a sample.
+constexpr double kImuMargin_s = 0.2;
+// Separate random sequences, so that e.g. another IMU rate leaves the tracks as they are.
+enum RandomStream : std::uint64_t { kImuStream = 1, kTrackStream = 2, kToldStream = 3 };
+
+Eigen::Vector3d ToVector3(const std::vector<double>& values, const char* key) {
+  if (values.size() != 3) throw InputError("", 0, key, "expected three numbers");
+  return {values[0], values[1], values[2]};
+}
+
+Eigen::Quaterniond RotationFromRows(const std::array<double, 9>& rows) {
+  const Eigen::Matrix3d M =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows.data());
+  return Eigen::Quaterniond(M).normalized();
+}
+
+Timestamp StampOf(Timestamp start, int index, double rate_hz) {
+  return start + static_cast<Timestamp>(std::llround(1e9 * static_cast<double>(index) / rate_hz));
+}
+
+ImuNoise ScaledNoise(const SimulationOptions& options) {
+  return {.gyroscope_density = options.noise_scale * options.gyroscope_density,
+          .accelerometer_density = options.noise_scale * options.accelerometer_density,
+          .gyroscope_random_walk = options.noise_scale * options.gyroscope_random_walk,
+          .accelerometer_random_walk = options.noise_scale * options.accelerometer_random_walk};
+}
+
+// Readings and truth at the IMU's stamps. The walk's steps have the variance density^2 dt, the
+// white noise density^2 / dt a sample (4.6, 4.7).
+void SimulateImu(const SimulationOptions& options, SimulatedRecording* recording) {
+  Random random(static_cast<std::uint64_t>(options.seed), kImuStream);
+  const double dt_s = 1.0 / options.imu_rate_hz;
+  const double root_dt = std::sqrt(dt_s);
+  const double root_rate = std::sqrt(options.imu_rate_hz);
+  const int count =
+      static_cast<int>(std::floor(recording->trajectory->duration_s() * options.imu_rate_hz)) + 1;
+  recording->imu.reserve(static_cast<std::size_t>(count));
+  recording->truth.reserve(static_cast<std::size_t>(count));
+  ImuBiases biases{.b_g = ToVector3(options.b_g_rad_per_s, "b_g_rad_per_s"),
+                   .b_a = ToVector3(options.b_a_m_per_s2, "b_a_m_per_s2")};
+  const ImuNoise& noise = recording->noise;
+  for (int i = 0; i < count; ++i) {
+    const Timestamp stamp = StampOf(recording->start, i, options.imu_rate_hz);
+    const double t_s =
+        std::min(SecondsBetween(recording->start, stamp), recording->trajectory->duration_s());
+    const Kinematics k = recording->trajectory->At(t_s);
+    const ImuRates true_rates{.omega_B = k.omega_B,
+                              .a_B = k.T_GB.R.conjugate() * (k.a_G - recording->g_G)};
+    const ImuRates read = DistortRates(true_rates, recording->true_rig.imu, biases);
+    ImuSample sample;
+    sample.timestamp = stamp;
+    sample.omega_m = read.omega_B + noise.gyroscope_density * root_rate * random.NormalVector<3>();
+    sample.a_m = read.a_B + noise.accelerometer_density * root_rate * random.NormalVector<3>();
+    recording->imu.push_back(sample);
+    recording->truth.push_back({.instant = stamp,
+                                .nav = {.R_GB = k.T_GB.R, .p_GB = k.T_GB.p, .v_GB = k.v_GB},
+                                .biases = biases});
+    biases.b_g += noise.gyroscope_random_walk * root_dt * random.NormalVector<3>();
+    biases.b_a += noise.accelerometer_random_walk * root_dt * random.NormalVector<3>();
+  }
+}
+
+RigCalibration DrawToldRig(const SimulationOptions& options, const RigCalibration& true_rig) {
+  const CalibrationLayout layout(options.told_errors, true_rig);
+  if (layout.size() == 0) return true_rig;
+  Random random(static_cast<std::uint64_t>(options.seed), kToldStream);
+  Eigen::VectorXd error = random.NormalVector(layout.size());
+  error.array() *= options.noise_scale * layout.PriorSigmas().array();
+  return BoxPlus(true_rig, layout, -error);
+}
+
+SimulatedRecording SimulateIn(const SimulationOptions& options,
+                              std::shared_ptr<const Trajectory> trajectory, const Room& room) {
+  if (options.cameras < 1 || options.cameras > 2) {
+    throw InputError("", 0, "cameras", "expected 1 or 2");
+  }
+  SimulatedRecording recording;
+  recording.trajectory = std::move(trajectory);
+  recording.start = kEpoch;
+  recording.g_G = {0.0, 0.0, -options.gravity_m_per_s2};
+  recording.noise = ScaledNoise(options);
+  recording.pixel_noise_px = options.noise_scale * options.pixel_noise_px;
+  if (options.true_rig) {
+    recording.true_rig = *options.true_rig;
+  } else {
+    recording.true_rig = EurocLikeRig(options.cameras);
+    recording.true_rig.t_d_s = options.t_d_s;
+    recording.true_rig.t_r_s = options.t_r_s;
+  }
+  recording.told_rig = DrawToldRig(options, recording.true_rig);
+  SimulateImu(options, &recording);
+
+  TrackSimulator tracks(options, recording.true_rig, *recording.trajectory, recording.start, room,
+                        Random(static_cast<std::uint64_t>(options.seed), kTrackStream));
+  const double frames_s = recording.trajectory->duration_s() - 2.0 * kImuMargin_s;
+  // Frames fall on the IMU's stamps where the rates divide, as EuRoC's do.
+  const Timestamp first_frame =
+      StampOf(recording.start, static_cast<int>(std::lround(kImuMargin_s * options.imu_rate_hz)),
+              options.imu_rate_hz);
+  const int frame_count =
+      static_cast<int>(std::floor(frames_s * options.camera_rate_hz + 1e-6)) + 1;
+  recording.frames.reserve(static_cast<std::size_t>(std::max(frame_count, 0)));
+  for (int i = 0; i < frame_count; ++i) {
+    recording.frames.push_back(tracks.Observe(StampOf(first_frame, i, options.camera_rate_hz)));
+  }
+  return recording;
+}
+
+}  // namespace
+
+InertialState SimulatedRecording::TruthAt(Timestamp instant) const {
+  CHECK_GE(instant, truth.front().instant);
+  CHECK_LE(instant, truth.back().instant);
+  auto after =
+      std::lower_bound(truth.begin(), truth.end(), instant,
+                       [](const InertialState& state, Timestamp t) { return state.instant < t; });
+  InertialState state;
+  state.instant = instant;
+  const Kinematics k = trajectory->At(SecondsBetween(start, instant));
+  state.nav = {.R_GB = k.T_GB.R, .p_GB = k.T_GB.p, .v_GB = k.v_GB};
+  state.biases = after->biases;
+  if (after->instant > instant) {
+    const auto before = after - 1;
+    const double share =
+        SecondsBetween(before->instant, instant) / SecondsBetween(before->instant, after->instant);
+    state.biases.b_g += (1.0 - share) * (before->biases.b_g - after->biases.b_g);
+    state.biases.b_a += (1.0 - share) * (before->biases.b_a - after->biases.b_a);
+  }
+  return state;
+}
+
+RigCalibration EurocLikeRig(int cameras) {
+  // R_BC by rows and p_BC [m]; turned round once to the thesis's R_CB and p_CB.
+  struct Mount {
+    std::array<double, 9> R_BC;
+    Eigen::Vector3d p_BC;
+    std::array<double, 9> parameters;
+  };
+  const std::array<Mount, 2> mounts = {
+      Mount{{0.0149, -0.99988, 0.0041, 0.99956, 0.0150, 0.0257, -0.0258, 0.0038, 0.99966},
+            {-0.0216, -0.0647, 0.0098},
+            {458.7, 457.3, 367.2, 248.4, -0.2834, 0.0740, 1.9e-4, 1.8e-5, 0.0}},
+      Mount{{0.0126, -0.99976, 0.0182, 0.99960, 0.0130, 0.0252, -0.0254, 0.0179, 0.99952},
+            {-0.0198, 0.0454, 0.0079},
+            {457.6, 456.1, 380.0, 255.2, -0.2837, 0.0745, -1.0e-4, -3.6e-5, 0.0}}};
+  RigCalibration rig;
+  for (int i = 0; i < cameras; ++i) {
+    const Mount& mount = mounts[static_cast<std::size_t>(i)];
+    const Eigen::Quaterniond R_CB = RotationFromRows(mount.R_BC).conjugate();
+    CameraCalibration camera;
+    camera.model =
+        CameraModel(DistortionModel::kRadialTangential, 752, 480,
+                    Eigen::Map<const Eigen::Matrix<double, 9, 1>>(mount.parameters.data()));
+    camera.R_CB = R_CB;
+    camera.p_CB = -(R_CB * mount.p_BC);
+    rig.cameras.push_back(camera);
+  }
+  return rig;
+}
+
+SimulatedRecording Simulate(const SimulationOptions& options) {
+  auto trajectory =
+      MakeTrajectory(options.trajectory, options.duration_s + 2.0 * kImuMargin_s, options.rest_s);
+  const Room room{.low = {-4.5, -4.0, 0.0}, .high = {4.5, 4.0, 3.2}};
+  return SimulateIn(options, std::move(trajectory), room);
+}
+
+SimulatedRecording Simulate(const SimulationOptions& options,
+                            std::shared_ptr<const Trajectory> trajectory) {
+  Room room{.low = trajectory->At(0.0).T_GB.p, .high = trajectory->At(0.0).T_GB.p};
+  for (double t_s = 0.0; t_s <= trajectory->duration_s(); t_s += 0.1) {
+    const Eigen::Vector3d p_GB = trajectory->At(t_s).T_GB.p;
+    room.low = room.low.cwiseMin(p_GB);
+    room.high = room.high.cwiseMax(p_GB);
+  }
+  room.low.array() -= 2.0;
+  room.high.array() += 2.0;
+  return SimulateIn(options, std::move(trajectory), room);
+}
+
+InitialCondition DrawInitialCondition(const InertialState& truth, const Matrix15d& covariance,
+                                      Random* random) {
+  const Eigen::LDLT<Matrix15d> ldlt(covariance);
+  CHECK(ldlt.isPositive()) << "a start covariance must be positive semidefinite";
+  const Vector15d scaled =
+      ldlt.vectorD().cwiseMax(0.0).cwiseSqrt().cwiseProduct(random->NormalVector<15>());
+  const Vector15d error = ldlt.transpositionsP().transpose() * Vector15d(ldlt.matrixL() * scaled);
+  // The error is true minus estimate, hence the sign.
+  return {.state = BoxPlus(truth, Vector15d(-error)), .covariance = covariance};
+}
+
+EstimatorSetup MakeSetup(const SimulatedRecording& recording, const SharedOptions& shared) {
+  EstimatorSetup setup;
+  setup.rig = recording.told_rig;
+  setup.imu_noise = recording.noise;
+  setup.g_G = recording.g_G;
+  setup.shared = shared;
+  setup.shared.pixel_noise_px = recording.pixel_noise_px;
+  return setup;
+}
+
+const std::vector<std::string>& SimulationPresetNames() {
+  static const std::vector<std::string> names = {"room_easy", "room_easy_stereo", "room_rest",
+                                                 "hover",     "excited",          "outliers"};
+  return names;
+}
+
+SimulationOptions SimulationPreset(const std::string& name) {
+  SimulationOptions options;
+  if (name == "room_easy") return options;
+  if (name == "room_easy_stereo") {
+    options.cameras = 2;
+  } else if (name == "room_rest") {
+    options.rest_s = 2.0;
+  } else if (name == "hover") {
+    options.trajectory = "hover";
+  } else if (name == "excited") {
+    options.trajectory = "lissajous";
+  } else if (name == "outliers") {
+    options.outlier_share = 0.02;
+    options.mismatch_share = 0.002;
+  } else {
+    std::string known;
+    for (const std::string& each : SimulationPresetNames()) {
+      known += (known.empty() ? "" : ", ") + each;
+    }
+    throw InputError("", 0, "preset", "unknown preset '" + name + "'; expected " + known);
+  }
+  return options;
+}
+
+}  // namespace duet
