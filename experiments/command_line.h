@@ -41,7 +41,7 @@ struct Command {
   std::string summary;      ///< one line of `duet help`
   std::string description;  ///< paragraphs of `duet help NAME`
   std::string example;
-  std::vector<FlagUse> flags;
+  std::vector<FlagUse> flags = {};
   std::string operands =
       {};  ///< what the words that are no flags are: "FILE..."; empty: none taken
   int (*run)(const CommandLine& line) = nullptr;

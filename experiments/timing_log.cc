@@ -25,17 +25,15 @@ std::vector<std::string_view> Split(std::string_view line) {
 
 }  // namespace
 
-void TimingLog::StartFrame(Timestamp timestamp) {
-  rows_.push_back({timestamp, std::vector<double>(columns_.size(), 0.0)});
-}
+void TimingLog::StartFrame(Timestamp timestamp) { rows_.push_back({timestamp, {}}); }
 
 void TimingLog::Add(const std::string& column, double cpu_ms) {
   const auto found = std::find(columns_.begin(), columns_.end(), column);
   const auto index = static_cast<std::size_t>(found - columns_.begin());
   if (found == columns_.end()) columns_.push_back(column);
   Row& row = rows_.back();
-  if (row.cpu_ms.size() <= index) row.cpu_ms.resize(index + 1, 0.0);
-  row.cpu_ms[index] += cpu_ms;
+  if (row.cpu_ms.size() <= index) row.cpu_ms.resize(index + 1);
+  row.cpu_ms[index] = row.cpu_ms[index].value_or(0.0) + cpu_ms;
 }
 
 void TimingLog::Add(const std::string& prefix, const std::vector<StageTimer::Stage>& stages) {
@@ -49,7 +47,8 @@ void TimingLog::Write(const std::filesystem::path& path) const {
   for (const Row& row : rows_) {
     AppendNumber(row.timestamp, &text);
     for (std::size_t i = 0; i < columns_.size(); ++i) {
-      text += "," + FormatFixed(i < row.cpu_ms.size() ? row.cpu_ms[i] : 0.0, 4);
+      text += ',';
+      if (i < row.cpu_ms.size() && row.cpu_ms[i]) text += FormatFixed(*row.cpu_ms[i], 4);
     }
     text += "\n";
   }
@@ -72,6 +71,7 @@ std::vector<double> ReadTimingColumn(const std::filesystem::path& path, const st
       index = static_cast<std::size_t>(found - fields.begin());
       continue;
     }
+    if (index < fields.size() && fields[index].empty()) continue;
     const std::optional<double> value =
         index < fields.size() ? ParseDouble(fields[index]) : std::nullopt;
     if (!value) throw InputError(path.string(), line_number, column, "expected a number");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,7 @@
 namespace duet {
 
 /// Rows of timing.csv: thread CPU time in ms, one row a frame, one column a stage. Columns appear
-/// with their first use; a stage that a frame did not have counts 0.
+/// with their first use; a field is empty where the frame did not have the stage.
 class TimingLog {
  public:
   void StartFrame(Timestamp timestamp);
@@ -23,13 +24,14 @@ class TimingLog {
  private:
   struct Row {
     Timestamp timestamp;
-    std::vector<double> cpu_ms;
+    std::vector<std::optional<double>> cpu_ms;  ///< may end early
   };
   std::vector<std::string> columns_;
   std::vector<Row> rows_;
 };
 
-/// One column of a timing.csv, empty where there is no such column. Throws InputError.
+/// One column of a timing.csv, of the frames that have it; empty where there is no such column.
+/// Throws InputError.
 [[nodiscard]] std::vector<double> ReadTimingColumn(const std::filesystem::path& path,
                                                    const std::string& column);
 

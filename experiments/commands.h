@@ -1,0 +1,16 @@
+#pragma once
+
+#include "experiments/command_line.h"
+
+namespace duet {
+
+/// The subcommands, one file each.
+[[nodiscard]] Command TrackCommand();
+[[nodiscard]] Command RunCommand();
+[[nodiscard]] Command CompareCommand();
+[[nodiscard]] Command EvaluateCommand();
+[[nodiscard]] Command ConfigCommand();
+[[nodiscard]] Command SimulateCommand();
+[[nodiscard]] Command CheckCommand();
+
+}  // namespace duet

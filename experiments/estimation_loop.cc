@@ -1,0 +1,72 @@
+#include "experiments/estimation_loop.h"
+
+#include "common/support/stage_timer.h"
+#include "experiments/interrupt.h"
+
+namespace duet {
+namespace {
+
+/// Hands over the IMU up to an instant and the one sample after it.
+class ImuFeed {
+ public:
+  explicit ImuFeed(const std::vector<ImuSample>& samples) : samples_(samples) {}
+
+  void Advance(Timestamp until, Estimator* estimator) {
+    while (next_ < samples_.size() && !Reached(until)) estimator->AddImu(samples_[next_++]);
+  }
+
+ private:
+  [[nodiscard]] bool Reached(Timestamp until) const {
+    return next_ > 0 && samples_[next_ - 1].timestamp >= until;
+  }
+
+  const std::vector<ImuSample>& samples_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace
+
+LoopOutcome RunEstimationLoop(const LoopParts& parts) {
+  auto& [frames, imu, imu_horizon_s, start, estimator, recorder, timing, progress] = parts;
+  StageTimer stages;  // the estimator's own
+  StageTimer totals;
+  estimator.set_stage_timer(&stages);
+  ImuFeed feed(imu);
+  bool started = false;
+
+  while (const TrackFrameSet* frame = Interrupted() ? nullptr : frames.Next()) {
+    stages.StartFrame();
+    totals.StartFrame();
+    timing.StartFrame(frame->timestamp);
+    frames.AddTiming(&timing);
+    {
+      const StageTimer::Scope scope(&totals, "estimator");
+      feed.Advance(frame->timestamp + ToNanoseconds(imu_horizon_s), &estimator);
+    }
+    if (!started) {
+      const std::optional<InitialCondition> initial = start.Try(*frame);
+      if (!initial) {
+        recorder.AddWaiting(*frame);
+        progress.Update(recorder.summary().frames);
+        continue;
+      }
+      estimator.Initialize(*initial);
+      started = true;
+    }
+    const EstimatorOutput* output = nullptr;
+    {
+      const StageTimer::Scope scope(&totals, "estimator");
+      output = &estimator.ProcessFrame(*frame);
+    }
+    recorder.Add(*frame, *output);
+    timing.Add("estimator", totals.stages().front().cpu_ms);
+    timing.Add("estimator", stages.stages());
+    progress.Update(recorder.summary().frames);
+    if (output->status == EstimatorStatus::kFailed) return LoopOutcome::kFailed;
+  }
+  estimator.set_stage_timer(nullptr);
+  if (Interrupted()) return LoopOutcome::kInterrupted;
+  return started ? LoopOutcome::kDone : LoopOutcome::kFailed;
+}
+
+}  // namespace duet
