@@ -30,17 +30,21 @@ void RungeKuttaStep(const ImuRates& begin, const ImuRates& end, double h_s, Moti
   const Coefficients q4 = q0 + h_s * dq3;
   const Coefficients dq4 = Derivative(q4, end.omega_B);
 
-  const Eigen::Quaterniond R3 = Eigen::Quaterniond(q3).normalized();
   const Eigen::Vector3d ds1 = motion->R * begin.a_B;
   const Eigen::Vector3d ds2 = Eigen::Quaterniond(q2).normalized() * a_middle;
-  const Eigen::Vector3d ds3 = R3 * a_middle;
+  const Eigen::Vector3d ds3 = Eigen::Quaterniond(q3).normalized() * a_middle;
   const Eigen::Vector3d ds4 = Eigen::Quaterniond(q4).normalized() * end.a_B;
 
   // y' = s: its four slopes are s, s + h/2 ds1, s + h/2 ds2, s + h ds3.
   motion->y += h_s * motion->s + (h_s * h_s / 6.0) * (ds1 + ds2 + ds3);
   motion->s += (h_s / 6.0) * (ds1 + 2.0 * ds2 + 2.0 * ds3 + ds4);
   motion->R.coeffs() = (q0 + (h_s / 6.0) * (dq1 + 2.0 * dq2 + 2.0 * dq3 + dq4)).normalized();
-  if (R_middle != nullptr) *R_middle = R3;
+  if (R_middle != nullptr) {
+    // Cubic Hermite interpolation between both ends, of fourth order.
+    const Coefficients& q1 = motion->R.coeffs();
+    R_middle->coeffs() =
+        (0.5 * (q0 + q1) + (h_s / 8.0) * (dq1 - Derivative(q1, end.omega_B))).normalized();
+  }
 }
 
 }  // namespace duet

@@ -17,7 +17,7 @@ struct MotionIncrement {
 
 /// One step of the classic fourth-order Runge-Kutta method on (R, s, y) from `*motion` over h_s
 /// (may be negative), the corrected rates linear from `begin` to `end` (6.11 to 6.13). `R_middle`,
-/// where not null, receives the rotation at the middle of the step (to third order), for
+/// where not null, receives the rotation at the middle of the step (to fourth order), for
 /// quadratures along it.
 void RungeKuttaStep(const ImuRates& begin, const ImuRates& end, double h_s, MotionIncrement* motion,
                     Eigen::Quaterniond* R_middle = nullptr);

