@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <utility>
 
 namespace duet {
 namespace {
@@ -20,42 +21,72 @@ double Evaluate(std::span<const double> coefficients, double u) {
   return sum;
 }
 
-// The smallest u > 0 at which the polynomial c[0] + c[1] u + ... with c[0] > 0 passes through zero;
-// infinity if nowhere. Between the zeros of its derivative it is monotone, so that signs at those
-// bracket every root; those zeros are found in the same way, degree by degree.
+// The sign change of the polynomial between low and high, to rounding.
+double Bisect(std::span<const double> coefficients, double low, double high) {
+  const bool positive = Evaluate(coefficients, low) > 0.0;
+  while (true) {
+    const double middle = 0.5 * (low + high);
+    if (middle <= low || middle >= high) return low;
+    ((Evaluate(coefficients, middle) > 0.0) == positive ? low : high) = middle;
+  }
+}
+
+// The positive roots of c[0] + c[1] u + c[2] u^2, ascending; the number of them.
+int PositiveQuadraticRoots(const double* c, double* roots) {
+  double candidates[2];
+  int count = 0;
+  if (c[2] == 0.0) {
+    if (c[1] != 0.0) candidates[count++] = -c[0] / c[1];
+  } else {
+    const double discriminant = c[1] * c[1] - 4.0 * c[2] * c[0];
+    if (discriminant < 0.0) return 0;
+    const double q = -0.5 * (c[1] + std::copysign(std::sqrt(discriminant), c[1]));
+    candidates[count++] = q / c[2];
+    if (q != 0.0) candidates[count++] = c[0] / q;
+    if (count == 2 && candidates[0] > candidates[1]) std::swap(candidates[0], candidates[1]);
+  }
+  int positive = 0;
+  for (int i = 0; i < count; ++i) {
+    if (candidates[i] > 0.0) roots[positive++] = candidates[i];
+  }
+  return positive;
+}
+
+// The smallest u > 0 at which the polynomial c[0] + c[1] u + ... with c[0] > 0 reaches zero;
+// infinity if nowhere. Between the zeros of its derivative a polynomial is monotone, so that its
+// signs there bracket every root: from the quadratic derivative upwards, degree by degree.
 double SmallestPositiveRoot(std::span<const double> c) {
-  double largest = 0.0;
   int top = static_cast<int>(c.size()) - 1;
   while (top > 0 && c[top] == 0.0) --top;
-  if (top == 0) return std::numeric_limits<double>::infinity();
+  if (std::all_of(c.begin(), c.end(), [](double x) { return x >= 0.0; })) {
+    return std::numeric_limits<double>::infinity();
+  }
+  double largest = 0.0;
   for (int i = 0; i < top; ++i) largest = std::max(largest, std::abs(c[i] / c[top]));
   const double bound = 1.0 + largest;  // Cauchy's: every root lies within
 
-  std::array<double, kMaxDegree + 2> roots{};  // of the derivative of the current order
+  std::array<double, kMaxDegree> roots{};  // of the derivative one degree below
   int root_count = 0;
-  std::array<double, kMaxDegree + 1> derivative{};
-  for (int degree_now = 1; degree_now <= top; ++degree_now) {
-    const int order = top - degree_now;
-    for (int i = 0; i <= degree_now; ++i) {
+  for (int degree = std::min(top, 2); degree <= top; ++degree) {
+    std::array<double, kMaxDegree + 1> derivative{};
+    const int order = top - degree;
+    for (int i = 0; i <= degree; ++i) {
       double factor = 1.0;
-      for (int j = 0; j < order; ++j) factor *= i + order - j;
+      for (int j = 1; j <= order; ++j) factor *= i + j;
       derivative[i] = factor * c[i + order];
     }
-    const std::span<const double> p(derivative.data(), degree_now + 1);
-    std::array<double, kMaxDegree + 2> found{};
+    if (degree <= 2) {
+      root_count = PositiveQuadraticRoots(derivative.data(), roots.data());
+      continue;
+    }
+    const std::span<const double> p(derivative.data(), degree + 1);
+    std::array<double, kMaxDegree> found{};
     int found_count = 0;
     double low = 0.0;
     for (int i = 0; i <= root_count; ++i) {
       const double high = i < root_count ? roots[i] : bound;
-      double a = low, b = high;
-      const bool positive = Evaluate(p, a) > 0.0;
-      if (positive != (Evaluate(p, b) > 0.0)) {
-        while (true) {
-          const double middle = 0.5 * (a + b);
-          if (middle <= a || middle >= b) break;
-          ((Evaluate(p, middle) > 0.0) == positive ? a : b) = middle;
-        }
-        found[found_count++] = a;
+      if ((Evaluate(p, low) > 0.0) != (Evaluate(p, high) > 0.0)) {
+        found[found_count++] = Bisect(p, low, high);
       }
       low = high;
     }
