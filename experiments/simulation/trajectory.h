@@ -78,13 +78,9 @@ class SplineTrajectory final : public Trajectory {
  public:
   explicit SplineTrajectory(PoseSpline spline) : spline_(std::move(spline)) {}
 
-  [[nodiscard]] double duration_s() const override {
-    return SecondsBetween(spline_.start(), spline_.end());
-  }
+  [[nodiscard]] double duration_s() const override;
   /// `t_s` is rounded to nanoseconds.
-  [[nodiscard]] Kinematics At(double t_s) const override {
-    return spline_.At(spline_.start() + ToNanoseconds(t_s));
-  }
+  [[nodiscard]] Kinematics At(double t_s) const override;
 
  private:
   PoseSpline spline_;
