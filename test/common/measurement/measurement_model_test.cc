@@ -125,7 +125,7 @@ TEST(PredictPixel, JacobiansAreDerivativesAtRandomStates) {
     };
     // Steps of 1e-4 keep the extrapolated differences good to 1e-9; tau is differentiated apart
     // with shorter steps that rarely cross an IMU sample, where rates have a kink.
-    const Eigen::MatrixXd N = NumericJacobian(moved, 39, 1e-4);
+    const Eigen::MatrixXd N = NumericJacobian(moved, 41, 1e-4);
     // Floors are the size of the terms that a small block is the difference of (camera 0 seen from
     // itself) or that its rounding comes from (px over a step of 1e-4).
     constexpr double kTolerance = 1e-6;
