@@ -36,8 +36,7 @@ int FeatureTracks::Add(const TrackFrameSet& frames, std::uint64_t clone_id) {
         seen_id = std::min(seen_id, observations[next_[c]].track_id);
       }
     }
-    const std::uint64_t known_id =
-        known < active_.size() ? pool_[active_[known]].track_id : kNone;
+    const std::uint64_t known_id = known < active_.size() ? pool_[active_[known]].track_id : kNone;
     if (seen_id == kNone && known == active_.size()) break;
     const bool is_known = known < active_.size() && known_id <= seen_id;
     const int slot = is_known ? active_[known++] : Create(seen_id);

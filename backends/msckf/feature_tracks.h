@@ -52,9 +52,9 @@ class FeatureTracks {
 
   std::vector<FeatureTrack> pool_;
   std::vector<int> free_;
-  std::vector<int> active_;       // into pool_, ascending track id
-  std::vector<int> next_active_;  // scratch
-  std::vector<std::size_t> next_; // scratch: next observation of each camera's frame
+  std::vector<int> active_;        // into pool_, ascending track id
+  std::vector<int> next_active_;   // scratch
+  std::vector<std::size_t> next_;  // scratch: next observation of each camera's frame
 };
 
 }  // namespace duet

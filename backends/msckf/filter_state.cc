@@ -24,8 +24,9 @@ void FilterState::Start(const InitialCondition& initial) {
 }
 
 int FilterState::CloneIndex(std::uint64_t id) const {
-  const auto it = std::lower_bound(clones_.begin(), clones_.end(), id,
-                                   [](const Clone& clone, std::uint64_t x) { return clone.id < x; });
+  const auto it =
+      std::lower_bound(clones_.begin(), clones_.end(), id,
+                       [](const Clone& clone, std::uint64_t x) { return clone.id < x; });
   CHECK(it != clones_.end() && it->id == id) << "clone " << id << " is not in the window";
   return static_cast<int>(it - clones_.begin());
 }

@@ -28,12 +28,13 @@ struct MsckfOptions {
             {.doc = "A track that ended with fewer observations (all cameras) is not used.",
              .min = 2,
              .max = 100});
-    v.Field("max_landmarks_per_update", &max_landmarks_per_update,
-            {.doc = "Most landmarks in one frame's update. Tracks that ended come first, then those "
-                    "that span the window, longest first; of the others that span the window only "
-                    "the oldest observation is lost.",
-             .min = 1,
-             .max = 2000});
+    v.Field(
+        "max_landmarks_per_update", &max_landmarks_per_update,
+        {.doc = "Most landmarks in one frame's update. Tracks that ended come first, then those "
+                "that span the window, longest first; of the others that span the window only "
+                "the oldest observation is lost.",
+         .min = 1,
+         .max = 2000});
     v.Field("gate", &gate, {.doc = "Refuse landmarks by the chi-squared test (6.24 to 6.26)."});
     v.Field("gate_probability", &gate_probability,
             {.doc = "Share of good landmarks that the chi-squared test lets pass.",

@@ -1,0 +1,173 @@
+#include "backends/msckf/feature_update.h"
+
+#include <algorithm>
+
+#include "backends/msckf/compression.h"
+#include "backends/msckf/nullspace.h"
+#include "common/support/logging.h"
+
+namespace duet {
+namespace {
+
+/// Rows of the residual after the projection of one landmark, at most.
+int MaxDegreesOfFreedom(const EstimatorSetup& setup, const MsckfOptions& options) {
+  return 2 * options.max_clones * static_cast<int>(setup.rig.cameras.size());
+}
+
+/// Removes the elements for which `refuse` is true (it may change the others), keeping the order.
+template <class T, class Refuse>
+void KeepUnless(std::vector<T>* elements, const Refuse& refuse) {
+  std::size_t kept = 0;
+  for (T& element : *elements) {
+    if (!refuse(element)) (*elements)[kept++] = element;
+  }
+  elements->resize(kept);
+}
+
+}  // namespace
+
+FeatureUpdate::FeatureUpdate(const EstimatorSetup& setup, const MsckfOptions& options)
+    : options_(options),
+      settings_{options.first_estimates, setup.shared.pixel_noise_px, setup.g_G},
+      gate_(options.gate_probability, MaxDegreesOfFreedom(setup, options)) {
+  const int max_observations = options.max_clones * static_cast<int>(setup.rig.cameras.size());
+  in_states_.reserve(max_observations);
+  observations_.reserve(max_observations * options.max_landmarks_per_update);
+  candidates_.reserve(options.max_landmarks_per_update);
+}
+
+void FeatureUpdate::SelectFinishedTracks(const FilterState& state, bool window_full,
+                                         FeatureTracks* tracks, FeatureCounts* counts) {
+  candidates_.clear();
+  const std::uint64_t oldest = state.clones().front().id;
+  for (int i = 0; i < tracks->size(); ++i) {
+    const FeatureTrack& track = (*tracks)[i];
+    if (!track.alive) ++counts->lost;
+    if (track.observations.empty()) continue;
+    const bool enough = static_cast<int>(track.observations.size()) >= options_.min_observations;
+    const bool spans = window_full && track.observations.front().clone_id == oldest;
+    if (!track.alive && !enough) ++counts->too_short;
+    if (enough && (!track.alive || spans)) candidates_.emplace_back().track = i;
+  }
+  std::stable_sort(candidates_.begin(), candidates_.end(),
+                   [&](const Candidate& a, const Candidate& b) {
+                     const FeatureTrack& track_a = (*tracks)[a.track];
+                     const FeatureTrack& track_b = (*tracks)[b.track];
+                     if (track_a.alive != track_b.alive) return track_b.alive;
+                     return track_a.observations.size() > track_b.observations.size();
+                   });
+  const auto limit = static_cast<std::size_t>(options_.max_landmarks_per_update);
+  if (candidates_.size() > limit) candidates_.resize(limit);
+}
+
+void FeatureUpdate::GatherObservations(const FilterState& state, const FeatureTrack& track,
+                                       Candidate* candidate) {
+  const bool time_matters = TimeMatters(state);
+  candidate->first_observation = static_cast<int>(observations_.size());
+  candidate->observation_count = static_cast<int>(track.observations.size());
+  in_states_.clear();
+  for (const ClonedObservation& o : track.observations) {
+    const int index = state.CloneIndex(o.clone_id);
+    const PixelObservation pixel{o.camera, Eigen::Vector2d(o.u, o.v)};
+    observations_.push_back({index, pixel});
+    const Clone& clone = state.clones()[index];
+    in_states_.push_back(
+        {{clone.nav, clone.t_d_at_instant_s, time_matters ? &clone.rates : nullptr}, pixel});
+  }
+  candidate->anchor_clone = observations_[candidate->first_observation].clone;
+}
+
+std::span<const LandmarkObservation> FeatureUpdate::ObservationsOf(const Candidate& candidate) {
+  return std::span<const LandmarkObservation>(observations_)
+      .subspan(candidate.first_observation, candidate.observation_count);
+}
+
+void FeatureUpdate::Triangulate(const FilterState& state, FeatureTracks* tracks,
+                                FeatureCounts* counts) {
+  observations_.clear();
+  KeepUnless(&candidates_, [&](Candidate& candidate) {
+    GatherObservations(state, (*tracks)[candidate.track], &candidate);
+    const Pose anchor = state.clones()[candidate.anchor_clone].nav.pose();
+    const TriangulationStatus status = duet::Triangulate(
+        state.rig(), in_states_, anchor, settings_.g_G, triangulation_, &candidate.landmark);
+    if (status == TriangulationStatus::kOk) return false;
+    ++counts->not_triangulated;
+    if (status == TriangulationStatus::kLargeResidual) tracks->Consume(candidate.track);
+    observations_.resize(candidate.first_observation);
+    return true;
+  });
+}
+
+void FeatureUpdate::Linearize(const FilterState& state, FeatureTracks* tracks,
+                              FeatureCounts* counts) {
+  columns_.Assign(state);
+  const int width = columns_.width() + 1;
+  const auto row_count = static_cast<Eigen::Index>(2 * observations_.size());
+  if (H_f_.rows() < row_count) H_f_.resize(row_count, 3);
+  if (rows_.rows() < row_count || rows_.cols() != width) {
+    rows_.resize(std::max(row_count, rows_.rows()), width);
+  }
+  int row = 0;
+  KeepUnless(&candidates_, [&](Candidate& candidate) {
+    const int count = 2 * candidate.observation_count;
+    candidate.first_row = row;
+    const bool ok = LinearizeLandmark(state, columns_, settings_, candidate.anchor_clone,
+                                      candidate.landmark, ObservationsOf(candidate),
+                                      H_f_.middleRows(row, count), rows_.middleRows(row, count));
+    if (ok) {
+      row += count;
+    } else {
+      ++counts->not_triangulated;
+      tracks->Consume(candidate.track);
+    }
+    return !ok;
+  });
+}
+
+void FeatureUpdate::ProjectNullspace() {
+  for (const Candidate& candidate : candidates_) {
+    const int count = 2 * candidate.observation_count;
+    // The anchor is the oldest clone that saw the landmark: columns before it are zero.
+    duet::ProjectNullspace(H_f_.middleRows(candidate.first_row, count),
+                           rows_.middleRows(candidate.first_row, count),
+                           columns_.CloneColumn(candidate.anchor_clone), columns_.width());
+  }
+}
+
+void FeatureUpdate::Gate(const FilterState& state, FeatureTracks* tracks, FeatureCounts* counts) {
+  const int width = columns_.width();
+  const std::span<const int> components = columns_.components();
+  if (options_.gate && !candidates_.empty()) {
+    const Eigen::Ref<const Eigen::MatrixXd> P = state.P();
+    P_measured_.resize(width, width);
+    for (int j = 0; j < width; ++j) {
+      for (int i = 0; i < width; ++i) P_measured_(i, j) = P(components[i], components[j]);
+    }
+  }
+  KeepUnless(&candidates_, [&](const Candidate& candidate) {
+    tracks->Consume(candidate.track);
+    const int first = columns_.CloneColumn(candidate.anchor_clone);
+    const auto block =
+        rows_.middleRows(candidate.first_row + 3, 2 * candidate.observation_count - 3);
+    const bool passes =
+        !options_.gate || gate_.Passes(block.middleCols(first, width - first), block.col(width),
+                                       P_measured_.bottomRightCorner(width - first, width - first));
+    ++(passes ? counts->used : counts->gated);
+    return !passes;
+  });
+}
+
+Eigen::Ref<const Eigen::MatrixXd> FeatureUpdate::Compress() {
+  Eigen::Index row_count = 0;
+  for (const Candidate& candidate : candidates_) row_count += 2 * candidate.observation_count - 3;
+  stack_.resize(row_count, columns_.width() + 1);
+  Eigen::Index row = 0;
+  for (const Candidate& candidate : candidates_) {
+    const int count = 2 * candidate.observation_count - 3;
+    stack_.middleRows(row, count) = rows_.middleRows(candidate.first_row + 3, count);
+    row += count;
+  }
+  return stack_.topRows(duet::Compress(stack_));
+}
+
+}  // namespace duet

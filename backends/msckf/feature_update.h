@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "backends/estimator.h"
+#include "backends/msckf/feature_tracks.h"
+#include "backends/msckf/filter_state.h"
+#include "backends/msckf/gate.h"
+#include "backends/msckf/linearization.h"
+#include "backends/msckf/msckf_options.h"
+#include "common/measurement/triangulation.h"
+
+namespace duet {
+
+/// One frame's visual measurements, from the tracks that are due to the compressed stack that the
+/// Kalman update takes (thesis 6.5). The stages are called in order, each works on what the one
+/// before left; memory is kept from frame to frame.
+class FeatureUpdate {
+ public:
+  FeatureUpdate(const EstimatorSetup& setup, const MsckfOptions& options);
+
+  /// Chooses the tracks that are due: those that ended with enough observations and, where
+  /// `window_full`, those whose observations reach back to the oldest clone, which is about to be
+  /// dropped. At most max_landmarks_per_update, ended ones first, longest first.
+  void SelectFinishedTracks(const FilterState& state, bool window_full, FeatureTracks* tracks,
+                            FeatureCounts* counts);
+
+  /// 5.1, 5.4: the landmarks, anchored in the oldest clone that saw them. A track whose pixels do
+  /// not fit one point is refused and its observations with it; one that has no depth yet (too
+  /// little parallax) keeps what the window keeps of them.
+  void Triangulate(const FilterState& state, FeatureTracks* tracks, FeatureCounts* counts);
+
+  /// 6.5.1: Jacobians and residuals of all landmarks, one block of rows each.
+  void Linearize(const FilterState& state, FeatureTracks* tracks, FeatureCounts* counts);
+
+  /// 6.5.2: three rows a landmark go.
+  void ProjectNullspace();
+
+  /// 6.5.3: refuses landmarks by the chi-squared test. Uses up the observations of both kinds.
+  void Gate(const FilterState& state, FeatureTracks* tracks, FeatureCounts* counts);
+
+  /// 6.30 to 6.32: the measurements that remain, [H | r] of unit noise; no rows where there are
+  /// none. Valid until the next call.
+  [[nodiscard]] Eigen::Ref<const Eigen::MatrixXd> Compress();
+
+  /// What the columns of the stack act on.
+  [[nodiscard]] const VisualColumns& columns() const { return columns_; }
+
+ private:
+  /// A landmark of this frame's update.
+  struct Candidate {
+    int track = 0;              // index into FeatureTracks
+    int first_observation = 0;  // into observations_
+    int observation_count = 0;
+    int first_row = 0;  // into rows_ and H_f_
+    int anchor_clone = 0;
+    InverseDepth landmark = InverseDepth::Zero();
+  };
+
+  void GatherObservations(const FilterState& state, const FeatureTrack& track,
+                          Candidate* candidate);
+  [[nodiscard]] std::span<const LandmarkObservation> ObservationsOf(const Candidate& candidate);
+
+  MsckfOptions options_;
+  LinearizationSettings settings_;
+  TriangulationOptions triangulation_;
+  ChiSquaredGate gate_;
+  VisualColumns columns_;
+
+  std::vector<Candidate> candidates_;
+  std::vector<LandmarkObservation> observations_;
+  std::vector<TrackObservationInState> in_states_;  // one landmark's
+  LandmarkRows H_f_;
+  MeasurementRows rows_;
+  Eigen::MatrixXd P_measured_;  // covariance of the measured components
+  Eigen::MatrixXd stack_;
+};
+
+}  // namespace duet
