@@ -1,6 +1,8 @@
 # duet_add_library(NAME SOURCES ... LINK ... [PRIVATE_LINK ...]): one library a folder, duet::NAME.
 # duet_add_test(NAME SOURCES ... LINK ...): one GoogleTest program, every case a CTest test.
 
+add_custom_target(unit_tests)  # all programs with the label unit, for the sanitizer builds
+
 add_library(duet_warnings INTERFACE)
 target_compile_options(duet_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion
                        -Wno-sign-conversion $<$<BOOL:${DUET_WERROR}>:-Werror>)
@@ -70,4 +72,7 @@ function(duet_add_test name)
   endif()
   add_test(NAME ${name} COMMAND ${name})
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}")
+  if("unit" IN_LIST ARG_LABELS)
+    add_dependencies(unit_tests ${name})
+  endif()
 endfunction()
