@@ -54,10 +54,16 @@ class ImageSource {
 
  private:
   class Decoder;
-  std::unique_ptr<Decoder> decoder_;
+
+  /// Counts an image that is missing; throws where that, or an image's size, is bad input.
+  void Judge(const ImageFiles& files, int camera, const cv::Mat& image);
+
   std::vector<ImageFiles> files_;
+  std::vector<cv::Size> sizes_;
   std::vector<int> missing_of_camera_;
+  std::size_t next_ = 0;
   std::vector<DroppedImage> dropped_;
+  std::unique_ptr<Decoder> decoder_;  // reads files_: goes first
 };
 
 }  // namespace duet

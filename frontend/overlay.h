@@ -34,7 +34,6 @@ class TrackOverlay {
   };
   int tail_frames_;
   int full_age_;
-  Timestamp timestamp_ = 0;
   std::map<int, std::map<std::uint64_t, Tail>> tails_;  // by camera, by id: those alive
 };
 
