@@ -1,0 +1,212 @@
+#include "evaluation/association.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <tuple>
+
+#include "common/geometry/interpolation.h"
+#include "common/support/input_error.h"
+#include "common/support/logging.h"
+#include "evaluation/statistics.h"
+
+namespace duet {
+namespace {
+
+constexpr double kEvoMaxDifferenceS = 0.01;
+constexpr double kRpgMaxDifferenceS = 0.02;
+constexpr double kGapPerMedianStep = 2.5;
+
+using Index = std::ptrdiff_t;
+
+Index FirstNotBefore(const std::vector<StampedPose>& poses, Timestamp t) {
+  return std::lower_bound(
+             poses.begin(), poses.end(), t,
+             [](const StampedPose& pose, Timestamp at) { return pose.timestamp < at; }) -
+         poses.begin();
+}
+
+bool JumpsBetween(const std::vector<Timestamp>& jumps, Timestamp start, Timestamp end) {
+  const auto jump = std::lower_bound(jumps.begin(), jumps.end(), start);
+  return jump != jumps.end() && *jump <= end;
+}
+
+PosePair MakePair(const StampedPose& truth, const StampedPose& estimate) {
+  return {estimate.timestamp, truth.T_GB, estimate.T_GB};
+}
+
+/// The index of the pose nearest in time, the earlier of two equally near; -1 for no poses.
+Index NearestIndex(const std::vector<StampedPose>& poses, Timestamp t) {
+  if (poses.empty()) return -1;
+  const Index after = FirstNotBefore(poses, t);
+  if (after == static_cast<Index>(poses.size())) return after - 1;
+  if (after == 0) return 0;
+  return t - poses[after - 1].timestamp <= poses[after].timestamp - t ? after - 1 : after;
+}
+
+void AssociateInterpolated(const std::vector<StampedPose>& truth,
+                           const std::vector<StampedPose>& estimate,
+                           const AssociationOptions& options, Association* result) {
+  for (const StampedPose& pose : estimate) {
+    if (const auto T_GB_true = TruthAt(truth, pose.timestamp, options)) {
+      result->pairs.push_back({pose.timestamp, *T_GB_true, pose.T_GB});
+    }
+  }
+}
+
+void AssociateLikeEvo(const std::vector<StampedPose>& truth,
+                      const std::vector<StampedPose>& estimate, double max_difference_s,
+                      Association* result) {
+  const bool estimate_longer = estimate.size() > truth.size();
+  const auto& shorter = estimate_longer ? truth : estimate;
+  const auto& longer = estimate_longer ? estimate : truth;
+  for (const StampedPose& pose : shorter) {
+    const Index nearest = NearestIndex(longer, pose.timestamp);
+    if (nearest < 0) return;
+    const StampedPose& partner = longer[nearest];
+    if (std::abs(SecondsBetween(partner.timestamp, pose.timestamp)) > max_difference_s) continue;
+    result->pairs.push_back(estimate_longer ? MakePair(pose, partner) : MakePair(partner, pose));
+  }
+}
+
+void AssociateLikeRpg(const std::vector<StampedPose>& truth,
+                      const std::vector<StampedPose>& estimate, double max_difference_s,
+                      Association* result) {
+  // (difference, index of the estimate, index of the truth), closest first.
+  std::vector<std::tuple<Timestamp, Index, Index>> candidates;
+  const Timestamp reach = ToNanoseconds(max_difference_s);
+  for (Index i = 0; i < static_cast<Index>(estimate.size()); ++i) {
+    const Timestamp t = estimate[i].timestamp;
+    for (Index k = FirstNotBefore(truth, t - reach); k < static_cast<Index>(truth.size()); ++k) {
+      const Timestamp difference = std::abs(truth[k].timestamp - t);
+      if (truth[k].timestamp > t && difference >= reach) break;
+      if (difference < reach) candidates.emplace_back(difference, i, k);
+    }
+  }
+  std::sort(candidates.begin(), candidates.end());
+  std::vector<Index> partner(estimate.size(), -1);
+  std::vector<bool> taken(truth.size(), false);
+  for (const auto& [difference, i, k] : candidates) {
+    if (partner[i] >= 0 || taken[k]) continue;
+    partner[i] = k;
+    taken[k] = true;
+  }
+  for (Index i = 0; i < static_cast<Index>(estimate.size()); ++i) {
+    if (partner[i] >= 0) result->pairs.push_back(MakePair(truth[partner[i]], estimate[i]));
+  }
+}
+
+template <class Stamped>
+double MedianStep(const std::vector<Stamped>& poses) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    steps.push_back(SecondsBetween(poses[i - 1].timestamp, poses[i].timestamp));
+  }
+  if (steps.empty()) return 0.0;
+  std::sort(steps.begin(), steps.end());
+  return SortedQuantile(steps, 0.5);
+}
+
+/// Coverage and gaps. A step between pairs is covered where no pose of the estimate was left
+/// unmatched inside it and it is not longer than the estimate's usual steps.
+void MeasureCoverage(const std::vector<StampedPose>& estimate, const AssociationOptions& options,
+                     Association* result) {
+  const bool interpolated = options.mode == AssociationMode::kInterpolated;
+  // The nearest modes leave poses out by design: there the pairs' own step is the usual one.
+  const double usual_step_s = interpolated ? MedianStep(estimate) : MedianStep(result->pairs);
+  const double longest_s = options.max_estimate_gap_s > 0.0 ? options.max_estimate_gap_s
+                                                            : kGapPerMedianStep * usual_step_s;
+  for (std::size_t i = 1; i < result->pairs.size(); ++i) {
+    const Timestamp start = result->pairs[i - 1].timestamp;
+    const Timestamp end = result->pairs[i].timestamp;
+    if (interpolated && FirstNotBefore(estimate, end) > FirstNotBefore(estimate, start) + 1) {
+      result->gaps.push_back({start, end, TimeGap::Cause::kTruth});
+    } else if (SecondsBetween(start, end) > longest_s) {
+      result->gaps.push_back({start, end, TimeGap::Cause::kEstimate});
+    } else {
+      result->coverage_s += SecondsBetween(start, end);
+    }
+  }
+}
+
+}  // namespace
+
+const char* AssociationModeName(AssociationMode mode) {
+  switch (mode) {
+    case AssociationMode::kInterpolated:
+      return "interpolated";
+    case AssociationMode::kEvoNearest:
+      return "evo";
+    case AssociationMode::kRpgNearest:
+      return "rpg";
+  }
+  return "";
+}
+
+double Association::MatchedShare() const {
+  return estimate_count > 0 ? static_cast<double>(pairs.size()) / estimate_count : 0.0;
+}
+
+void CheckTrajectory(const std::string& name, const std::vector<StampedPose>& poses) {
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const StampedPose& pose = poses[i];
+    const std::string at =
+        "pose " + std::to_string(i + 1) + " (stamp " + std::to_string(pose.timestamp) + " ns)";
+    if (i > 0 && pose.timestamp <= poses[i - 1].timestamp) {
+      throw InputError(name, 0, "",
+                       at + ": stamps must increase, the one before is " +
+                           std::to_string(poses[i - 1].timestamp));
+    }
+    if (!pose.T_GB.p.allFinite() || !pose.T_GB.R.coeffs().allFinite()) {
+      throw InputError(name, 0, "", at + ": expected finite numbers");
+    }
+    if (std::abs(pose.T_GB.R.norm() - 1.0) > 1e-3) {
+      throw InputError(name, 0, "", at + ": expected a quaternion of length 1");
+    }
+  }
+}
+
+std::optional<Pose> TruthAt(const std::vector<StampedPose>& truth, Timestamp t,
+                            const AssociationOptions& options) {
+  const Index after = FirstNotBefore(truth, t);
+  if (after == static_cast<Index>(truth.size())) return std::nullopt;
+  if (truth[after].timestamp == t) return truth[after].T_GB;
+  if (after == 0) return std::nullopt;
+  if (JumpsBetween(options.truth_jumps, truth[after - 1].timestamp, truth[after].timestamp)) {
+    return std::nullopt;
+  }
+  return InterpolatePose(truth, t, options.max_truth_gap_s);
+}
+
+Association Associate(const std::vector<StampedPose>& truth,
+                      const std::vector<StampedPose>& estimate, const AssociationOptions& options) {
+  Association result;
+  result.estimate_count = static_cast<int>(estimate.size());
+  const auto limit = [&](double own) {
+    return options.max_nearest_s > 0.0 ? options.max_nearest_s : own;
+  };
+  switch (options.mode) {
+    case AssociationMode::kInterpolated:
+      AssociateInterpolated(truth, estimate, options, &result);
+      break;
+    case AssociationMode::kEvoNearest:
+      AssociateLikeEvo(truth, estimate, limit(kEvoMaxDifferenceS), &result);
+      break;
+    case AssociationMode::kRpgNearest:
+      AssociateLikeRpg(truth, estimate, limit(kRpgMaxDifferenceS), &result);
+      break;
+  }
+  for (const StampedPose& pose : estimate) {
+    const bool outside = truth.empty() || pose.timestamp < truth.front().timestamp ||
+                         pose.timestamp > truth.back().timestamp;
+    result.outside_truth += outside ? 1 : 0;
+  }
+  if (options.mode == AssociationMode::kInterpolated) {
+    result.in_truth_gap =
+        result.estimate_count - result.outside_truth - static_cast<int>(result.pairs.size());
+  }
+  MeasureCoverage(estimate, options, &result);
+  return result;
+}
+
+}  // namespace duet
