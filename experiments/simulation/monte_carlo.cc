@@ -1,0 +1,249 @@
+#include "experiments/simulation/monte_carlo.h"
+
+#include <glog/logging.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <thread>
+
+#include "common/geometry/so3.h"
+#include "evaluation/errors.h"
+#include "evaluation/statistics.h"
+
+namespace duet {
+namespace {
+
+constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+// Apart from the recording's own random sequences (simulator.cc).
+constexpr std::uint64_t kStartStream = 11;
+
+CalibrationPriors ScaledPriors(CalibrationPriors priors, double scale) {
+  for (double* sigma : {&priors.sigma_T_g, &priors.sigma_T_s, &priors.sigma_T_a,
+                        &priors.sigma_p_CB_m, &priors.sigma_R_CB_rad, &priors.sigma_intrinsics_px,
+                        &priors.sigma_distortion, &priors.sigma_t_d_s, &priors.sigma_t_r_s}) {
+    *sigma *= scale;
+  }
+  return priors;
+}
+
+// Collects what one run's outputs say against the truth.
+class RunStatistics {
+ public:
+  RunStatistics(const SimulatedRecording& recording, double settle_s, MonteCarloRun* run)
+      : recording_(recording), settle_s_(settle_s), run_(*run) {}
+
+  void Add(const EstimatorOutput& output) {
+    ++run_.frames;
+    run_.used += output.features.used;
+    run_.gated += output.features.gated;
+    if (output.status == EstimatorStatus::kDeadReckoning) ++run_.dead_reckoned;
+    if (output.status == EstimatorStatus::kInitializing) return;
+    if (first_ == 0) first_ = output.frame_timestamp;
+    run_.coverage_s = SecondsBetween(first_, output.frame_timestamp);
+    const InertialState truth = recording_.TruthAt(output.state.instant);
+    run_.nees.samples.push_back(
+        ComputeNees(output.frame_timestamp, truth, output.state, output.covariance));
+    if (run_.coverage_s < settle_s_) return;
+    const Vector15d error = BoxMinus(truth, output.state);
+    squares_ += error.cwiseAbs2();
+    pairs_.push_back({.timestamp = output.frame_timestamp,
+                      .T_GB_true = truth.nav.pose(),
+                      .T_EB = output.state.nav.pose()});
+  }
+
+  void Finish(const EstimatorOutput* last, const CalibrationLayout& layout) {
+    run_.nees.start = first_;
+    run_.nees.failed = run_.failed;
+    const double count = static_cast<double>(pairs_.size());
+    if (pairs_.empty()) return;
+    const auto rms = [&](int block) {
+      return std::sqrt(squares_.segment<3>(3 * block).sum() / count);
+    };
+    run_.orientation_rms_deg = rms(0) * kDegrees;
+    run_.position_rms_m = rms(1);
+    run_.velocity_rms_m_per_s = rms(2);
+    run_.b_g_rms_rad_per_s = rms(3);
+    run_.b_a_rms_m_per_s2 = rms(4);
+    const AbsoluteErrors ate = ComputeAbsoluteErrors(pairs_, AlignmentMode::kPositionYaw);
+    run_.ate_position_m = ate.position_m.rmse;
+    run_.ate_orientation_deg = ate.orientation_deg.rmse;
+    if (last != nullptr && layout.size() > 0) {
+      const Eigen::VectorXd error = BoxMinus(recording_.true_rig, last->rig, layout);
+      const Eigen::MatrixXd covariance =
+          last->covariance.block(15, 15, layout.size(), layout.size());
+      run_.calibration_size = layout.size();
+      run_.calibration_nees = Nees(error, covariance).value_or(std::nan(""));
+    }
+  }
+
+ private:
+  const SimulatedRecording& recording_;
+  double settle_s_;
+  MonteCarloRun& run_;
+  Timestamp first_ = 0;
+  Vector15d squares_ = Vector15d::Zero();
+  std::vector<PosePair> pairs_;
+};
+
+std::string Format(const char* format, ...) __attribute__((format(printf, 1, 2)));
+std::string Format(const char* format, ...) {
+  char buffer[256];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(buffer, sizeof(buffer), format, arguments);
+  va_end(arguments);
+  return buffer;
+}
+
+}  // namespace
+
+Matrix15d StartCovariance(const InitializationOptions& start, double scale) {
+  Vector15d sigma;
+  sigma << start.sigma_tilt_rad, start.sigma_tilt_rad, start.sigma_yaw_rad,
+      Eigen::Vector3d::Constant(start.sigma_position_m),
+      Eigen::Vector3d::Constant(start.sigma_velocity_m_per_s),
+      Eigen::Vector3d::Constant(start.sigma_b_g_rad_per_s),
+      Eigen::Vector3d::Constant(start.sigma_b_a_m_per_s2);
+  return (scale * sigma).cwiseAbs2().asDiagonal();
+}
+
+MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,
+                      const EstimatorMaker& make_estimator) {
+  SimulationOptions simulation = options.simulation;
+  simulation.seed = seed;
+  simulation.noise_scale *= options.noise_scale;
+  simulation.told_errors = options.shared.calibration;
+  const SimulatedRecording recording = Simulate(simulation);
+  SharedOptions shared = options.shared;
+  shared.calibration = ScaledPriors(shared.calibration, simulation.noise_scale);
+  const EstimatorSetup setup = MakeSetup(recording, shared);
+  const std::unique_ptr<Estimator> estimator = make_estimator(setup);
+
+  Random random(static_cast<std::uint64_t>(seed), kStartStream);
+  const Timestamp first_instant =
+      recording.frames.front().timestamp + ToNanoseconds(recording.told_rig.t_d_s);
+  estimator->Initialize(DrawInitialCondition(recording.TruthAt(first_instant),
+                                             StartCovariance(options.start, options.noise_scale),
+                                             &random));
+
+  MonteCarloRun run;
+  run.seed = seed;
+  RunStatistics statistics(recording, options.settle_s, &run);
+  const Timestamp horizon = ToNanoseconds(ImuHorizon(shared));
+  const EstimatorOutput* output = nullptr;
+  std::size_t next = 0;
+  for (const TrackFrameSet& frames : recording.frames) {
+    // Up to the horizon, and one sample more.
+    while (next < recording.imu.size() &&
+           (next == 0 || recording.imu[next - 1].timestamp < frames.timestamp + horizon)) {
+      estimator->AddImu(recording.imu[next++]);
+    }
+    output = &estimator->ProcessFrame(frames);
+    if (output->status == EstimatorStatus::kFailed) {
+      run.failed = true;
+      run.reason = output->reason;
+      break;
+    }
+    statistics.Add(*output);
+  }
+  statistics.Finish(run.failed ? nullptr : output, estimator->layout());
+  return run;
+}
+
+MonteCarloResult RunMonteCarlo(const MonteCarloOptions& options,
+                               const EstimatorMaker& make_estimator) {
+  MonteCarloResult result;
+  result.runs.resize(static_cast<std::size_t>(options.runs));
+  std::atomic<int> next{0};
+  const auto work = [&] {
+    for (int i = next++; i < options.runs; i = next++) {
+      result.runs[static_cast<std::size_t>(i)] =
+          RunOnce(options, options.simulation.seed + i, make_estimator);
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int i = 1; i < options.threads; ++i) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+
+  std::vector<NeesRun> nees;
+  for (const MonteCarloRun& run : result.runs) nees.push_back(run.nees);
+  result.consistency = SummarizeConsistency(nees, {.settle_s = options.settle_s});
+  return result;
+}
+
+const BlockConsistency& MonteCarloResult::Block(NeesBlock block) const {
+  for (const BlockConsistency& each : consistency.blocks) {
+    if (each.block == block) return each;
+  }
+  LOG(FATAL) << "no NEES of " << NeesBlockName(block);
+}
+
+std::string MonteCarloText(const std::string& title, const MonteCarloResult& result) {
+  std::string text = title + "\n" + ConsistencyText(result.consistency);
+  const auto row = [&](const char* name, double MonteCarloRun::*member) {
+    std::vector<double> values;
+    for (const MonteCarloRun& run : result.runs) {
+      if (!run.failed) values.push_back(run.*member);
+    }
+    const ErrorSummary summary = Summarize(values);
+    text +=
+        Format("  %-28s %10.4g %10.4g %10.4g\n", name, summary.median, summary.p95, summary.max);
+  };
+  text += "  over runs                        median        p95        max\n";
+  row("ATE position [m]", &MonteCarloRun::ate_position_m);
+  row("ATE orientation [deg]", &MonteCarloRun::ate_orientation_deg);
+  row("position, unaligned [m]", &MonteCarloRun::position_rms_m);
+  row("orientation, unaligned [deg]", &MonteCarloRun::orientation_rms_deg);
+  row("velocity [m/s]", &MonteCarloRun::velocity_rms_m_per_s);
+  row("gyro bias [rad/s]", &MonteCarloRun::b_g_rms_rad_per_s);
+  row("accel bias [m/s^2]", &MonteCarloRun::b_a_rms_m_per_s2);
+  long used = 0;
+  long gated = 0;
+  double calibration = 0.0;
+  int calibration_size = 0;
+  int completed = 0;
+  for (const MonteCarloRun& run : result.runs) {
+    used += run.used;
+    gated += run.gated;
+    if (run.failed) {
+      text +=
+          Format("  seed %d FAILED after %.1f s: ", run.seed, run.coverage_s) + run.reason + "\n";
+      continue;
+    }
+    ++completed;
+    calibration += run.calibration_nees;
+    calibration_size = run.calibration_size;
+  }
+  text +=
+      Format("  landmarks used %ld, gated %ld (%.1f %%)\n", used, gated,
+             100.0 * static_cast<double>(gated) / static_cast<double>(std::max(1L, used + gated)));
+  if (calibration_size > 0 && completed > 0) {
+    text += Format("  calibration at the end: mean NEES %.2f of %d\n", calibration / completed,
+                   calibration_size);
+  }
+  return text;
+}
+
+double LogLogSlope(const std::vector<double>& scales, const std::vector<double>& errors) {
+  CHECK_EQ(scales.size(), errors.size());
+  double mean_x = 0.0;
+  double mean_y = 0.0;
+  const double count = static_cast<double>(scales.size());
+  for (std::size_t i = 0; i < scales.size(); ++i) {
+    mean_x += std::log(scales[i]) / count;
+    mean_y += std::log(errors[i]) / count;
+  }
+  double xx = 0.0;
+  double xy = 0.0;
+  for (std::size_t i = 0; i < scales.size(); ++i) {
+    const double x = std::log(scales[i]) - mean_x;
+    xx += x * x;
+    xy += x * (std::log(errors[i]) - mean_y);
+  }
+  return xy / xx;
+}
+
+}  // namespace duet

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "backends/estimator.h"
+#include "backends/initialization/initialization.h"
+#include "evaluation/consistency.h"
+#include "experiments/simulation/simulator.h"
+
+namespace duet {
+
+/// A new estimator for a setup; called from several threads at once.
+using EstimatorMaker = std::function<std::unique_ptr<Estimator>(const EstimatorSetup&)>;
+
+/// Many simulated recordings through one estimator, in memory. The start error is drawn from the
+/// start covariance, the told calibration from the priors of what is estimated: without that NEES
+/// means nothing (DESIGN.md section 5).
+struct MonteCarloOptions {
+  SimulationOptions simulation;  ///< `seed` is the first run's; told_errors come from `shared`
+  SharedOptions shared;          ///< with pixel noise from the simulation
+  InitializationOptions start;   ///< 1 sigma of the first state
+  int runs = 20;
+  int threads = 2;
+  double settle_s = 2.0;
+  /// Start errors, IMU and pixel noise and the priors of the calibration all multiplied by it.
+  double noise_scale = 1.0;
+};
+
+/// One run. Errors are over the frames after settle_s.
+struct MonteCarloRun {
+  int seed = 0;
+  bool failed = false;
+  std::string reason;
+  NeesRun nees;  ///< stamps are the frames'
+  int frames = 0;
+  int dead_reckoned = 0;
+  double coverage_s = 0.0;  ///< from the first to the last frame with a tracking output
+  /// Root mean square, without alignment: the start error is part of it.
+  double position_rms_m = 0.0;
+  double orientation_rms_deg = 0.0;
+  double velocity_rms_m_per_s = 0.0;
+  double b_g_rms_rad_per_s = 0.0;
+  double b_a_rms_m_per_s2 = 0.0;
+  /// After position + yaw alignment, and a yaw of their own for the orientations.
+  double ate_position_m = 0.0;
+  double ate_orientation_deg = 0.0;
+  long used = 0;  ///< sums of FeatureCounts
+  long gated = 0;
+  /// error' covariance^-1 error of the estimated calibration at the last frame, and its size.
+  double calibration_nees = 0.0;
+  int calibration_size = 0;
+};
+
+struct MonteCarloResult {
+  std::vector<MonteCarloRun> runs;  ///< in order of seed
+  ConsistencyReport consistency;
+
+  [[nodiscard]] const BlockConsistency& Block(NeesBlock block) const;  ///< CHECKs that it is there
+};
+
+/// The same result for any number of threads.
+[[nodiscard]] MonteCarloResult RunMonteCarlo(const MonteCarloOptions& options,
+                                             const EstimatorMaker& make_estimator);
+
+/// One seed of it.
+[[nodiscard]] MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,
+                                    const EstimatorMaker& make_estimator);
+
+/// The first state's covariance: order theta, p, v, b_g, b_a; theta in G, so that its z is yaw.
+[[nodiscard]] Matrix15d StartCovariance(const InitializationOptions& start, double scale);
+
+/// The table of a study for the terminal.
+[[nodiscard]] std::string MonteCarloText(const std::string& title, const MonteCarloResult& result);
+
+/// How an error follows the noise: least-squares slope of log(error) against log(scale).
+[[nodiscard]] double LogLogSlope(const std::vector<double>& scales,
+                                 const std::vector<double>& errors);
+
+}  // namespace duet
