@@ -1,10 +1,9 @@
 #include "backends/window/imu_factor.h"
 
-#include <glog/logging.h>
-
 #include <Eigen/Cholesky>
 
 #include "common/geometry/so3.h"
+#include "common/support/logging.h"
 
 namespace duet {
 

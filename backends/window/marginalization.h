@@ -33,8 +33,7 @@ inline constexpr double kRankTolerance = 1e-13;
 /// This is the marginal of a Gaussian. Both lists together need not be all of x: components that
 /// are in neither are held at zero (conditioned on).
 [[nodiscard]] InformationForm SchurComplement(const InformationForm& form,
-                                              std::span<const int> keep,
-                                              std::span<const int> drop);
+                                              std::span<const int> keep, std::span<const int> drop);
 
 /// By Cholesky's method with complete diagonal pivoting and the rank rule. H must be positive
 /// semidefinite up to rounding.

@@ -48,10 +48,11 @@ struct WindowOptions {
              {.doc = "Which frames stay: parallax drops the second newest frame while it is close "
                      "to the keyframe before it (VINS-Fusion's rule); every_frame keeps the newest "
                      "max_frames frames, as the filter does."});
-    v.Field("min_parallax_px", &min_parallax_px,
-            {.doc = "A frame whose tracks moved that far on average since the last keyframe is one.",
-             .unit = "px",
-             .min = 0});
+    v.Field(
+        "min_parallax_px", &min_parallax_px,
+        {.doc = "A frame whose tracks moved that far on average since the last keyframe is one.",
+         .unit = "px",
+         .min = 0});
     v.Field("min_common_tracks", &min_common_tracks,
             {.doc = "A frame that shares fewer tracks with the last keyframe is a keyframe.",
              .min = 0});
@@ -107,10 +108,10 @@ struct WindowOptions {
              {{"dogleg", TrustRegion::kDogleg},
               {"levenberg_marquardt", TrustRegion::kLevenbergMarquardt}},
              {.doc = "Trust region method of the solver."});
-    v.Choice("linear_solver", &linear_solver,
-             {{"dense_schur", LinearSolver::kDenseSchur},
-              {"sparse_schur", LinearSolver::kSparseSchur}},
-             {.doc = "Linear solver; the landmarks are eliminated first in both."});
+    v.Choice(
+        "linear_solver", &linear_solver,
+        {{"dense_schur", LinearSolver::kDenseSchur}, {"sparse_schur", LinearSolver::kSparseSchur}},
+        {.doc = "Linear solver; the landmarks are eliminated first in both."});
     v.Field("reintegration_threshold", &reintegration_threshold,
             {.doc = "An IMU delta is integrated again where biases or calibration have moved its "
                     "rotation [rad], velocity [m/s] or position [m] further; the first-order "

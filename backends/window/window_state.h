@@ -60,13 +60,18 @@ struct LandmarkObservation {
 /// A track's point: (alpha, beta, rho) in C0 of the anchor, the first frame that it was seen in.
 struct Landmark {
   std::uint64_t track_id = 0;
-  bool has_value = false;     ///< triangulated
-  bool in_problem = false;    ///< of the newest frame's problem
-  bool seen_newest = false;   ///< observed in the newest frame
+  bool has_value = false;    ///< triangulated
+  bool in_problem = false;   ///< of the newest frame's problem
+  bool seen_newest = false;  ///< observed in the newest frame
   InverseDepth value = InverseDepth::Zero();
   std::vector<LandmarkObservation> observations;  ///< ascending in (frame, camera)
 
   [[nodiscard]] int anchor() const { return observations.front().frame; }
 };
+
+/// True for the pixel that fixes alpha and beta where rho alone is free.
+[[nodiscard]] inline bool IsAnchorPixel(const Landmark& landmark, const LandmarkObservation& o) {
+  return o.frame == landmark.anchor() && o.pixel.camera == 0;
+}
 
 }  // namespace duet

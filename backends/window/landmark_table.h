@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "backends/window/window_state.h"
+#include "common/dataset/track_stream.h"
+
+namespace duet {
+
+/// The landmarks of the window with their pixels, sorted by track id. A landmark is anchored in the
+/// first frame that it has a pixel in; where that one leaves, its value moves on to the next.
+class LandmarkTable {
+ public:
+  /// Takes in a stamp's tracks as those of frame `frame`, the newest. Returns the number of pixels.
+  int AddFrame(const TrackFrameSet& frames, int frame);
+
+  /// Forgets a frame's pixels; frames after it count down by one. Landmarks anchored there are
+  /// anchored anew: the value is expressed in the next frame's camera (it must not be part of a
+  /// prior). Landmarks without any pixel left end. `point` is the window before the frame is gone.
+  void DropFrame(int frame, const WindowPoint& point);
+
+  /// Forgets a landmark's pixels in frames before `first_kept`, moving its value on as above.
+  static void KeepFrom(int first_kept, const WindowPoint& point, Landmark* landmark);
+
+  /// Ends landmarks without pixels.
+  void RemoveEmpty();
+
+  [[nodiscard]] std::vector<Landmark>& landmarks() { return landmarks_; }
+  [[nodiscard]] const std::vector<Landmark>& landmarks() const { return landmarks_; }
+
+ private:
+  Landmark& FindOrAdd(std::uint64_t track_id, std::size_t sorted);
+
+  std::vector<Landmark> landmarks_;
+  std::vector<std::vector<LandmarkObservation>> spare_;  // memory of ended landmarks
+};
+
+/// Sets alpha and beta to what the anchor's pixel in camera C0 says, keeping rho: for the mode that
+/// takes that pixel as free of noise. False where there is none or it can't be undistorted.
+[[nodiscard]] bool FixByAnchorPixel(const RigCalibration& rig, Landmark* landmark);
+
+}  // namespace duet

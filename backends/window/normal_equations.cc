@@ -1,0 +1,184 @@
+#include "backends/window/normal_equations.h"
+
+#include <array>
+#include <cmath>
+
+#include "common/support/logging.h"
+
+namespace duet {
+namespace {
+
+constexpr int kMaxFrames = 64;
+
+// L with L L' = V (3 x 3), by Cholesky in the order alpha, beta, rho; directions without
+// information get no pivot (a row of zeros in L^-1).
+Eigen::Matrix3d InverseCholesky(const Eigen::Matrix3d& V) {
+  Eigen::Vector3d scale;
+  for (int i = 0; i < 3; ++i) scale[i] = V(i, i) > 0.0 ? 1.0 / std::sqrt(V(i, i)) : 0.0;
+  const Eigen::Matrix3d M = scale.asDiagonal() * V * scale.asDiagonal();
+  Eigen::Matrix3d L = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < i; ++j) {
+      if (L(j, j) > 0.0) L(i, j) = (M(i, j) - L.row(i).head(j).dot(L.row(j).head(j))) / L(j, j);
+    }
+    const double pivot = M(i, i) - L.row(i).head(i).squaredNorm();
+    if (pivot <= kRankTolerance) continue;
+    L(i, i) = std::sqrt(pivot);
+    inverse(i, i) = 1.0 / L(i, i);
+    for (int j = 0; j < i; ++j) {
+      inverse(i, j) = -(L.row(i).head(i) * inverse.col(j).head(i))(0, 0) / L(i, i);
+    }
+  }
+  return inverse * scale.asDiagonal();
+}
+
+}  // namespace
+
+NormalEquations::NormalEquations(int frame_count, const CalibrationLayout& layout)
+    : layout_(&layout), frame_count_(frame_count), calibration_(kFrameSize * frame_count) {
+  CHECK_LE(frame_count, kMaxFrames);
+  const int n = calibration_ + layout.size();
+  sum_.H.setZero(n, n);
+  sum_.b.setZero(n);
+}
+
+void NormalEquations::AddImu(int i, int j, const Vector15d& r, const ImuFactorJacobians& J) {
+  const int a = kFrameSize * i;
+  const int b = kFrameSize * j;
+  Eigen::MatrixXd& H = sum_.H;
+  H.block<15, 15>(a, a).noalias() += J.J_i.transpose() * J.J_i;
+  H.block<15, 15>(a, b).noalias() += J.J_i.transpose() * J.J_j;
+  H.block<15, 15>(b, b).noalias() += J.J_j.transpose() * J.J_j;
+  sum_.b.segment<15>(a).noalias() += J.J_i.transpose() * r;
+  sum_.b.segment<15>(b).noalias() += J.J_j.transpose() * r;
+
+  for (const auto& e : layout_->entries()) {
+    if (!IsImuBlock(e.block)) continue;
+    const auto J_e = J.J_T.middleCols<9>(ImuBlockOffset(e.block));
+    const int c = calibration_ + e.offset;
+    H.block<15, 9>(a, c).noalias() += J.J_i.transpose() * J_e;
+    H.block<15, 9>(b, c).noalias() += J.J_j.transpose() * J_e;
+    sum_.b.segment<9>(c).noalias() += J_e.transpose() * r;
+    for (const auto& f : layout_->entries()) {
+      if (!IsImuBlock(f.block) || f.offset < e.offset) continue;
+      H.block<9, 9>(c, calibration_ + f.offset).noalias() +=
+          J_e.transpose() * J.J_T.middleCols<9>(ImuBlockOffset(f.block));
+    }
+  }
+}
+
+void NormalEquations::AddStandstill(int i, int j, const StandstillResidual& residual) {
+  // The measurement's Jacobians are those of the prediction h; the residual is z - h.
+  const Eigen::Matrix<double, 6, 1> w = residual.sigma.cwiseInverse();
+  const Eigen::Matrix<double, 6, 9> J_i = -(w.asDiagonal() * residual.J_i);
+  const Eigen::Matrix<double, 6, 9> J_j = -(w.asDiagonal() * residual.J_j);
+  const Eigen::Matrix<double, 6, 1> r = w.cwiseProduct(residual.r);
+  const int a = kFrameSize * i;
+  const int b = kFrameSize * j;
+  sum_.H.block<9, 9>(a, a).noalias() += J_i.transpose() * J_i;
+  sum_.H.block<9, 9>(a, b).noalias() += J_i.transpose() * J_j;
+  sum_.H.block<9, 9>(b, b).noalias() += J_j.transpose() * J_j;
+  sum_.b.segment<9>(a).noalias() += J_i.transpose() * r;
+  sum_.b.segment<9>(b).noalias() += J_j.transpose() * r;
+}
+
+void NormalEquations::AddLandmark(int anchor, std::span<const LinearObservation> observations,
+                                  bool velocities, bool inverse_depth_only) {
+  if (velocities) {
+    AddLandmarkOf<9>(anchor, observations, inverse_depth_only);
+  } else {
+    AddLandmarkOf<6>(anchor, observations, inverse_depth_only);
+  }
+}
+
+template <int kSize>
+void NormalEquations::AddLandmarkOf(int anchor, std::span<const LinearObservation> observations,
+                                    bool inverse_depth_only) {
+  using FrameRows = Eigen::Matrix<double, 2, kSize>;
+  Eigen::MatrixXd& H = sum_.H;
+  Eigen::VectorXd& b = sum_.b;
+  const int c_size = layout_->size();
+
+  std::array<Eigen::Matrix<double, 3, kSize>, kMaxFrames> W;  // landmark x frame
+  std::array<bool, kMaxFrames> seen{};
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3,
+                ReprojectionJacobians::kMaxCalibration>
+      W_c(3, c_size);
+  W_c.setZero();
+  Eigen::Matrix3d V = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b_l = Eigen::Vector3d::Zero();
+  const auto see = [&](int frame) {
+    if (!seen[frame]) W[frame].setZero();
+    seen[frame] = true;
+  };
+
+  see(anchor);
+  FrameRows J_a = FrameRows::Zero();
+  for (const LinearObservation& o : observations) {
+    const int f = o.frame;
+    see(f);
+    Eigen::Matrix<double, 2, 3> J_l = o.J.landmark;
+    if (inverse_depth_only) J_l.template leftCols<2>().setZero();
+    V.noalias() += J_l.transpose() * J_l;
+    b_l.noalias() += J_l.transpose() * o.r;
+
+    FrameRows J_f = o.J.state.template leftCols<kSize>();
+    if (f == anchor) {
+      J_f.template leftCols<6>() += o.J.anchor;
+    } else {
+      J_a.template leftCols<6>() = o.J.anchor;
+      W[anchor].noalias() += J_l.transpose() * J_a;
+      H.block<kSize, kSize>(kFrameSize * anchor, kFrameSize * anchor).noalias() +=
+          J_a.transpose() * J_a;
+      // The anchor is the first frame of its landmark, so this is the upper triangle.
+      H.block<kSize, kSize>(kFrameSize * anchor, kFrameSize * f).noalias() += J_a.transpose() * J_f;
+      b.segment<kSize>(kFrameSize * anchor).noalias() += J_a.transpose() * o.r;
+      if (c_size > 0) {
+        H.block(kFrameSize * anchor, calibration_, kSize, c_size).noalias() +=
+            J_a.transpose() * o.J.calibration;
+      }
+    }
+    W[f].noalias() += J_l.transpose() * J_f;
+    H.block<kSize, kSize>(kFrameSize * f, kFrameSize * f).noalias() += J_f.transpose() * J_f;
+    b.segment<kSize>(kFrameSize * f).noalias() += J_f.transpose() * o.r;
+    if (c_size > 0) {
+      H.block(kFrameSize * f, calibration_, kSize, c_size).noalias() +=
+          J_f.transpose() * o.J.calibration;
+      H.block(calibration_, calibration_, c_size, c_size).noalias() +=
+          o.J.calibration.transpose() * o.J.calibration;
+      b.segment(calibration_, c_size).noalias() += o.J.calibration.transpose() * o.r;
+      W_c.noalias() += J_l.transpose() * o.J.calibration;
+    }
+  }
+
+  // Schur complement of the landmark: with Y = L^-1 W, H -= Y'Y and b -= Y'(L^-1 b_l).
+  const Eigen::Matrix3d L_inverse = InverseCholesky(V);
+  const Eigen::Vector3d y_l = L_inverse * b_l;
+  W_c = L_inverse * W_c;
+  for (int f = 0; f < frame_count_; ++f) {
+    if (seen[f]) W[f] = (L_inverse * W[f]).eval();
+  }
+  for (int f = 0; f < frame_count_; ++f) {
+    if (!seen[f]) continue;
+    for (int g = f; g < frame_count_; ++g) {
+      if (!seen[g]) continue;
+      H.block<kSize, kSize>(kFrameSize * f, kFrameSize * g).noalias() -= W[f].transpose() * W[g];
+    }
+    b.segment<kSize>(kFrameSize * f).noalias() -= W[f].transpose() * y_l;
+    if (c_size > 0) {
+      H.block(kFrameSize * f, calibration_, kSize, c_size).noalias() -= W[f].transpose() * W_c;
+    }
+  }
+  if (c_size > 0) {
+    H.block(calibration_, calibration_, c_size, c_size).noalias() -= W_c.transpose() * W_c;
+    b.segment(calibration_, c_size).noalias() -= W_c.transpose() * y_l;
+  }
+}
+
+InformationForm NormalEquations::Take() {
+  sum_.H.triangularView<Eigen::StrictlyLower>() = sum_.H.transpose();
+  return std::move(sum_);
+}
+
+}  // namespace duet

@@ -1,0 +1,340 @@
+#include "backends/window/solver_costs.h"
+
+#include "backends/window/imu_factor.h"
+#include "common/geometry/so3.h"
+#include "common/support/logging.h"
+
+namespace duet {
+namespace {
+
+using Kind = CostBlock::Kind;
+
+template <int kRows, int kCols>
+using JacobianMap = Eigen::Map<Eigen::Matrix<double, kRows, kCols, Eigen::RowMajor>>;
+
+// Writes d r / d pose's seven numbers from d r / d (theta, p).
+template <int kRows, class Derived>
+void WritePose(const Eigen::MatrixBase<Derived>& J, const ParameterArena::Lift& lift, double* out) {
+  JacobianMap<kRows, 7> map(out);
+  map.template leftCols<4>().noalias() = J.template leftCols<3>() * lift;
+  map.template rightCols<3>() = J.template rightCols<3>();
+}
+
+bool IsRotation(const CostBlock& block, const SolverContext& context) {
+  return block.kind == Kind::kCalibration &&
+         context.layout->entries()[block.index].block == CalibrationBlock::kExtrinsicRotation;
+}
+
+// Declares the blocks to Ceres and lists their memory.
+void Declare(const std::vector<CostBlock>& blocks, const SolverContext& context,
+             std::vector<int>* sizes, std::vector<double*>* parameters) {
+  sizes->clear();
+  parameters->clear();
+  for (const CostBlock& block : blocks) {
+    sizes->push_back(BlockSize(block, context));
+    parameters->push_back(BlockMemory(block, context));
+  }
+}
+
+// Which camera-side blocks of the calibration a pixel of `camera` depends on. Where it was seen in
+// the anchor's own frame by the anchor's camera, the extrinsics cancel.
+bool DependsOn(const CalibrationLayout::Entry& e, const LandmarkObservation& o) {
+  switch (e.block) {
+    case CalibrationBlock::kExtrinsicTranslation:
+    case CalibrationBlock::kExtrinsicRotation:
+      return e.camera == 0 || e.camera == o.pixel.camera;
+    case CalibrationBlock::kIntrinsics:
+    case CalibrationBlock::kDistortion:
+      return e.camera == o.pixel.camera;
+    case CalibrationBlock::kTimeOffset:
+    case CalibrationBlock::kReadoutTime:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+double* BlockMemory(const CostBlock& block, const SolverContext& context) {
+  ParameterArena& arena = *context.arena;
+  switch (block.kind) {
+    case Kind::kPose:
+      return arena.pose(block.index);
+    case Kind::kVelocity:
+      return arena.velocity(block.index);
+    case Kind::kBiases:
+      return arena.biases(block.index);
+    case Kind::kCalibration:
+      return arena.calibration(block.index);
+    case Kind::kLandmark:
+      return arena.landmark(block.index) + (context.inverse_depth_only ? 2 : 0);
+  }
+  LOG(FATAL) << "unknown kind of block";
+  return nullptr;
+}
+
+int BlockSize(const CostBlock& block, const SolverContext& context) {
+  switch (block.kind) {
+    case Kind::kPose:
+      return 7;
+    case Kind::kVelocity:
+      return 3;
+    case Kind::kBiases:
+      return 6;
+    case Kind::kCalibration:
+      return IsRotation(block, context) ? 4 : context.layout->entries()[block.index].size;
+    case Kind::kLandmark:
+      return context.inverse_depth_only ? 1 : 3;
+  }
+  LOG(FATAL) << "unknown kind of block";
+  return 0;
+}
+
+void ReprojectionCost::Reset(const SolverContext* context, int landmark_index, int anchor,
+                             const LandmarkObservation& observation,
+                             std::vector<double*>* parameters) {
+  context_ = context;
+  landmark_ = context->arena->landmark(landmark_index);
+  anchor_ = anchor;
+  observation_ = observation;
+  blocks_.clear();
+  blocks_.push_back({Kind::kLandmark, landmark_index});
+  // At its own instant the anchor's pose cancels in what the anchor's frame sees.
+  const bool same = observation.frame == anchor;
+  if (!same) blocks_.push_back({Kind::kPose, anchor});
+  if (!same || context->reprojection.off_instant) {
+    blocks_.push_back({Kind::kPose, observation.frame});
+  }
+  if (context->reprojection.off_instant) blocks_.push_back({Kind::kVelocity, observation.frame});
+  for (int e = 0; e < static_cast<int>(context->layout->entries().size()); ++e) {
+    if (DependsOn(context->layout->entries()[e], observation)) {
+      blocks_.push_back({Kind::kCalibration, e});
+    }
+  }
+  set_num_residuals(2);
+  Declare(blocks_, *context, mutable_parameter_block_sizes(), parameters);
+}
+
+bool ReprojectionCost::Evaluate(double const* const* parameters, double* residuals,
+                                double** jacobians) const {
+  const ParameterArena& arena = *context_->arena;
+  InverseDepth landmark = Eigen::Map<const Eigen::Vector3d>(landmark_);
+  if (context_->inverse_depth_only) {
+    landmark.z() = parameters[0][0];
+  } else {
+    landmark = Eigen::Map<const Eigen::Vector3d>(parameters[0]);
+  }
+  Eigen::Vector2d r;
+  if (jacobians == nullptr) {
+    if (!EvaluateReprojection(context_->reprojection, arena.point(), *context_->frames, anchor_,
+                              observation_, landmark, &r)) {
+      return false;
+    }
+    Eigen::Map<Eigen::Vector2d>{residuals} = r;
+    return true;
+  }
+
+  ReprojectionJacobians J;
+  if (!EvaluateReprojection(context_->reprojection, arena.point(), *context_->frames,
+                            *context_->layout, anchor_, observation_, landmark, &r, &J)) {
+    return false;
+  }
+  Eigen::Map<Eigen::Vector2d>{residuals} = r;
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    if (jacobians[k] == nullptr) continue;
+    const CostBlock& block = blocks_[k];
+    switch (block.kind) {
+      case Kind::kLandmark:
+        if (context_->inverse_depth_only) {
+          Eigen::Map<Eigen::Vector2d>{jacobians[k]} = J.landmark.col(2);
+        } else {
+          JacobianMap<2, 3>{jacobians[k]} = J.landmark;
+        }
+        break;
+      case Kind::kPose: {
+        Eigen::Matrix<double, 2, 6> J_pose = Eigen::Matrix<double, 2, 6>::Zero();
+        if (block.index == anchor_) J_pose += J.anchor;
+        if (block.index == observation_.frame) J_pose += J.state.leftCols<6>();
+        WritePose<2>(J_pose, arena.frame_lift(block.index), jacobians[k]);
+        break;
+      }
+      case Kind::kVelocity:
+        JacobianMap<2, 3>{jacobians[k]} = J.state.rightCols<3>();
+        break;
+      case Kind::kCalibration: {
+        const auto& entry = context_->layout->entries()[block.index];
+        if (IsRotation(block, *context_)) {
+          JacobianMap<2, 4>{jacobians[k]} =
+              J.calibration.middleCols<3>(entry.offset) * arena.calibration_lift(block.index);
+        } else {
+          JacobianMap<2, Eigen::Dynamic>(jacobians[k], 2, entry.size) =
+              J.calibration.middleCols(entry.offset, entry.size);
+        }
+        break;
+      }
+      case Kind::kBiases:
+        break;
+    }
+  }
+  return true;
+}
+
+void ImuCost::Reset(const SolverContext* context, int frame, std::vector<double*>* parameters) {
+  context_ = context;
+  frame_ = frame;
+  blocks_.clear();
+  for (const int f : {frame - 1, frame}) {
+    blocks_.push_back({Kind::kPose, f});
+    blocks_.push_back({Kind::kVelocity, f});
+    blocks_.push_back({Kind::kBiases, f});
+  }
+  for (int e = 0; e < static_cast<int>(context->layout->entries().size()); ++e) {
+    if (IsImuBlock(context->layout->entries()[e].block)) blocks_.push_back({Kind::kCalibration, e});
+  }
+  set_num_residuals(15);
+  Declare(blocks_, *context, mutable_parameter_block_sizes(), parameters);
+}
+
+bool ImuCost::Evaluate(double const* const* /*parameters*/, double* residuals,
+                       double** jacobians) const {
+  const ParameterArena& arena = *context_->arena;
+  const WindowPoint& point = arena.point();
+  const ImuLink& link = *(*context_->frames)[frame_].link;
+  const int i = frame_ - 1;
+  const int j = frame_;
+  Vector15d r;
+  ImuFactorJacobians J;
+  EvaluateImuFactor(link.delta, point.nav[i], point.biases[i], point.nav[j], point.biases[j],
+                    point.rig.imu, context_->reprojection.g_G, &r,
+                    jacobians == nullptr ? nullptr : &J);
+  const auto W = link.sqrt_information.triangularView<Eigen::Lower>();
+  Eigen::Map<Vector15d>{residuals} = W * r;
+  if (jacobians == nullptr) return true;
+
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    if (jacobians[k] == nullptr) continue;
+    const CostBlock& block = blocks_[k];
+    const Matrix15d& J_state = block.index == i ? J.J_i : J.J_j;
+    switch (block.kind) {
+      case Kind::kPose: {
+        const Eigen::Matrix<double, 15, 6> J_pose = W * J_state.middleCols<6>(kPoseOffset);
+        WritePose<15>(J_pose, arena.frame_lift(block.index), jacobians[k]);
+        break;
+      }
+      case Kind::kVelocity:
+        JacobianMap<15, 3>{jacobians[k]} = W * J_state.middleCols<3>(kVelocityOffset);
+        break;
+      case Kind::kBiases:
+        JacobianMap<15, 6>{jacobians[k]} = W * J_state.middleCols<6>(kBiasesOffset);
+        break;
+      case Kind::kCalibration: {
+        const auto& entry = context_->layout->entries()[block.index];
+        JacobianMap<15, 9>{jacobians[k]} = W * J.J_T.middleCols<9>(ImuBlockOffset(entry.block));
+        break;
+      }
+      case Kind::kLandmark:
+        break;
+    }
+  }
+  return true;
+}
+
+void StandstillCost::Reset(const SolverContext* context, int frame,
+                           std::vector<double*>* parameters) {
+  context_ = context;
+  frame_ = frame;
+  set_num_residuals(6);
+  Declare({{Kind::kPose, frame - 1}, {Kind::kPose, frame}, {Kind::kVelocity, frame}}, *context,
+          mutable_parameter_block_sizes(), parameters);
+}
+
+bool StandstillCost::Evaluate(double const* const* /*parameters*/, double* residuals,
+                              double** jacobians) const {
+  const ParameterArena& arena = *context_->arena;
+  const int i = frame_ - 1;
+  const int j = frame_;
+  const StandstillResidual s =
+      EvaluateStandstill(arena.point().nav[i], arena.point().nav[j], context_->standstill);
+  const Eigen::Matrix<double, 6, 1> w = s.sigma.cwiseInverse();
+  Eigen::Map<Eigen::Matrix<double, 6, 1>>{residuals} = w.cwiseProduct(s.r);
+  if (jacobians == nullptr) return true;
+
+  // s.J are those of the prediction h, the residual is z - h.
+  const Eigen::Matrix<double, 6, 9> J_i = -(w.asDiagonal() * s.J_i);
+  const Eigen::Matrix<double, 6, 9> J_j = -(w.asDiagonal() * s.J_j);
+  if (jacobians[0] != nullptr) {
+    WritePose<6>(J_i.leftCols<6>(), arena.frame_lift(i), jacobians[0]);
+  }
+  if (jacobians[1] != nullptr) {
+    WritePose<6>(J_j.leftCols<6>(), arena.frame_lift(j), jacobians[1]);
+  }
+  if (jacobians[2] != nullptr) JacobianMap<6, 3>{jacobians[2]} = J_j.rightCols<3>();
+  return true;
+}
+
+void PriorCost::Reset(const SolverContext* context, const WindowPrior* prior,
+                      std::vector<double*>* parameters) {
+  context_ = context;
+  prior_ = prior;
+  std::vector<CostBlock> blocks;
+  for (const PriorBlock& block : prior->blocks) {
+    const Kind kind = block.kind == PriorBlock::Kind::kPose       ? Kind::kPose
+                      : block.kind == PriorBlock::Kind::kVelocity ? Kind::kVelocity
+                      : block.kind == PriorBlock::Kind::kBiases   ? Kind::kBiases
+                                                                  : Kind::kCalibration;
+    blocks.push_back({kind, block.index});
+  }
+  set_num_residuals(static_cast<int>(prior->root.J.rows()));
+  Declare(blocks, *context, mutable_parameter_block_sizes(), parameters);
+  deviation_.resize(prior->root.J.cols());
+}
+
+bool PriorCost::Evaluate(double const* const* /*parameters*/, double* residuals,
+                         double** jacobians) const {
+  const ParameterArena& arena = *context_->arena;
+  const int frame_count = static_cast<int>(context_->frames->size());
+  DeviationFromOrigin(*context_->frames, arena.point(), prior_->rig_origin, *context_->layout,
+                      &window_deviation_);
+  int column = 0;
+  for (const PriorBlock& block : prior_->blocks) {
+    deviation_.segment(column, block.size) =
+        window_deviation_.segment(WindowColumn(block, frame_count, *context_->layout), block.size);
+    column += block.size;
+  }
+  const Eigen::MatrixXd& J = prior_->root.J;
+  Eigen::Map<Eigen::VectorXd> r(residuals, J.rows());
+  r = prior_->root.e;
+  r.noalias() += J * deviation_;
+  if (jacobians == nullptr) return true;
+
+  column = 0;
+  for (std::size_t k = 0; k < prior_->blocks.size(); ++k) {
+    const PriorBlock& block = prior_->blocks[k];
+    const int first = column;
+    column += block.size;
+    if (jacobians[k] == nullptr) continue;
+    const bool pose = block.kind == PriorBlock::Kind::kPose;
+    const bool rotation = block.kind == PriorBlock::Kind::kCalibration &&
+                          IsRotation({Kind::kCalibration, block.index}, *context_);
+    if (!pose && !rotation) {
+      JacobianMap<Eigen::Dynamic, Eigen::Dynamic>(jacobians[k], J.rows(), block.size) =
+          J.middleCols(first, block.size);
+      continue;
+    }
+    const ParameterArena::Lift lift =
+        LeftJacobianInverse(deviation_.segment<3>(first)) *
+        (pose ? arena.frame_lift(block.index) : arena.calibration_lift(block.index));
+    if (pose) {
+      JacobianMap<Eigen::Dynamic, 7> map(jacobians[k], J.rows(), 7);
+      map.leftCols<4>().noalias() = J.middleCols<3>(first) * lift;
+      map.rightCols<3>() = J.middleCols<3>(first + 3);
+    } else {
+      JacobianMap<Eigen::Dynamic, 4>(jacobians[k], J.rows(), 4).noalias() =
+          J.middleCols<3>(first) * lift;
+    }
+  }
+  return true;
+}
+
+}  // namespace duet

@@ -1,0 +1,352 @@
+#include "backends/window/window_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/support/logging.h"
+
+namespace duet {
+namespace {
+
+ReprojectionSetup MakeReprojectionSetup(const EstimatorSetup& setup) {
+  ReprojectionSetup reprojection;
+  reprojection.g_G = setup.g_G;
+  reprojection.pixel_noise_px = setup.shared.pixel_noise_px;
+  reprojection.off_instant = setup.shared.calibration.estimate_t_d ||
+                             setup.shared.calibration.estimate_t_r || setup.rig.t_r_s != 0.0;
+  return reprojection;
+}
+
+}  // namespace
+
+WindowEstimator::WindowEstimator(const EstimatorSetup& setup, const WindowOptions& options)
+    : setup_(setup),
+      options_(options),
+      layout_(setup.shared.calibration, setup.rig),
+      reprojection_(MakeReprojectionSetup(setup)),
+      rig_(setup.rig),
+      rate_reach_s_(2.0 * setup.shared.max_abs_t_d_s + 0.5 * setup.shared.max_abs_t_r_s),
+      standstill_(setup.shared.standstill),
+      linearizer_(options_, reprojection_, setup_.shared.standstill, layout_),
+      problem_(options_, reprojection_, setup_.shared.standstill, layout_) {
+  CHECK_LE(layout_.size(), ReprojectionJacobians::kMaxCalibration);
+  CHECK_GE(options_.max_frames, 3);
+  frames_.reserve(options_.max_frames + 1);
+}
+
+void WindowEstimator::Initialize(const InitialCondition& initial) {
+  CHECK(frames_.empty()) << "Initialize is called once";
+  initial_ = initial;
+  WindowFrame frame;
+  frame.state = initial.state;
+  frame.timestamp = initial.state.instant - ToNanoseconds(rig_.t_d_s);
+  frame.t_d_at_instant_s = rig_.t_d_s;
+  frame.origin = frame.state;
+  frame.pose_in_prior = frame.velocity_in_prior = frame.biases_in_prior = true;
+  frames_.push_back(std::move(frame));
+  prior_ = StartPrior(initial.covariance, rig_, layout_);
+}
+
+void WindowEstimator::AddImu(const ImuSample& sample) { imu_.Add(sample); }
+
+/// One frame, one screen.
+const EstimatorOutput& WindowEstimator::ProcessFrame(const TrackFrameSet& frames) {
+  if (!Accept(frames)) return output_;
+  Preintegrate();
+  AppendFrame(frames);
+  TriangulateNew();
+  BuildProblem();
+  Solve();
+  RejectOutliers();
+  DecideKeyframe();
+  Report();
+  Marginalize();
+  Slide();
+  return output_;
+}
+
+bool WindowEstimator::Accept(const TrackFrameSet& frames) {
+  output_.frame_timestamp = frames.timestamp;
+  output_.features = {};
+  output_.iterations = 0;
+  output_.standstill = false;
+  if (output_.status == EstimatorStatus::kFailed) return false;
+  output_.rig = rig_;
+  if (!initial_) return false;
+  instant_ = frames.timestamp + ToNanoseconds(rig_.t_d_s);
+  if (instant_ < initial_->state.instant) return false;
+
+  const Timestamp last = frames_.back().state.instant;
+  const bool first = newest() == 0 && table_.landmarks().empty() && instant_ == last;
+  if (!first && instant_ <= last) {
+    Skip("the frame is not after the last one");
+    return false;
+  }
+  if (!imu_.Covers(last, instant_)) {
+    Skip("the IMU does not cover the frame's interval");
+    return false;
+  }
+  if (imu_.LongestGap(last, instant_) > setup_.shared.max_imu_gap_s) {
+    Skip("the IMU has a gap in the frame's interval");
+    return false;
+  }
+  return true;
+}
+
+void WindowEstimator::Skip(const std::string& reason) {
+  ++skipped_frames_;
+  output_.status = EstimatorStatus::kDeadReckoning;
+  output_.reason = "skipped: " + reason;
+}
+
+void WindowEstimator::Fail(const std::string& reason) {
+  if (output_.status == EstimatorStatus::kFailed) return;
+  output_.status = EstimatorStatus::kFailed;
+  output_.reason = reason;
+}
+
+ImuLink WindowEstimator::Integrate(Timestamp from, Timestamp to, const ImuBiases& biases,
+                                   const ImuCalibration& calibration) {
+  imu_.Extract(from, to, &readings_);
+  ImuDeltaOptions delta_options;
+  delta_options.calibration_jacobians = layout_.OffsetOf(CalibrationBlock::kTg) >= 0 ||
+                                        layout_.OffsetOf(CalibrationBlock::kTs) >= 0 ||
+                                        layout_.OffsetOf(CalibrationBlock::kTa) >= 0;
+  ImuLink link;
+  link.delta = IntegrateImu(readings_, biases, calibration, setup_.imu_noise, delta_options);
+  link.sqrt_information = SquareRootInformation(link.delta.covariance);
+  return link;
+}
+
+void WindowEstimator::Preintegrate() {
+  const StageTimer::Scope scope(timer_, "preintegrate");
+  new_link_.reset();
+  const WindowFrame& last = frames_.back();
+  if (instant_ == last.state.instant) return;  // the first image at the first state's instant
+  new_link_ = Integrate(last.state.instant, instant_, last.state.biases, rig_.imu);
+}
+
+void WindowEstimator::AppendFrame(const TrackFrameSet& frames) {
+  const StageTimer::Scope scope(timer_, "append");
+  if (new_link_) {
+    const WindowFrame& last = frames_.back();
+    WindowFrame frame;
+    frame.timestamp = frames.timestamp;
+    frame.t_d_at_instant_s = rig_.t_d_s;
+    frame.state.instant = instant_;
+    frame.state.nav = Predict(last.state.nav, new_link_->delta, setup_.g_G);
+    frame.state.biases = last.state.biases;
+    frame.link = std::move(new_link_);
+    frames_.push_back(std::move(frame));
+  }
+  WindowFrame& frame = frames_.back();
+  frame.at_rest_since_before = standstill_.Update(frames, instant_, imu_) && newest() > 0;
+
+  for (const Landmark& landmark : table_.landmarks()) {
+    output_.features.lost += landmark.seen_newest ? 1 : 0;
+  }
+  output_.features.observed = table_.AddFrame(frames, newest());
+  for (const Landmark& landmark : table_.landmarks()) {
+    const auto& o = landmark.observations;
+    if (landmark.seen_newest && o.front().frame < newest()) --output_.features.lost;
+  }
+  output_.features.lost = std::max(output_.features.lost, 0);
+}
+
+void WindowEstimator::TriangulateNew() {
+  const StageTimer::Scope scope(timer_, "triangulate");
+  linearizer_.SetWindow(frames_, rig_);
+  if (reprojection_.off_instant) {
+    for (WindowFrame& frame : frames_) {
+      frame.rates.Assign(imu_, frame.state.instant, rate_reach_s_, frame.state.biases, rig_.imu);
+    }
+  }
+  TriangulationOptions triangulation;
+  triangulation.min_parallax_rad = options_.min_parallax_rad;
+  for (Landmark& landmark : table_.landmarks()) {
+    if (landmark.has_value || !landmark.seen_newest) continue;
+    if (landmark.observations.size() < 2) continue;
+    triangulation_.clear();
+    for (const LandmarkObservation& o : landmark.observations) {
+      const WindowFrame& frame = frames_[o.frame];
+      triangulation_.push_back({{frame.state.nav, frame.t_d_at_instant_s,
+                                 reprojection_.off_instant ? &frame.rates : nullptr},
+                                o.pixel});
+    }
+    const TriangulationStatus status =
+        Triangulate(rig_, triangulation_, frames_[landmark.anchor()].state.nav.pose(), setup_.g_G,
+                    triangulation, &landmark.value);
+    landmark.has_value = status == TriangulationStatus::kOk;
+    if (!landmark.has_value) ++output_.features.not_triangulated;
+    if (landmark.has_value &&
+        options_.landmark_parameters == WindowOptions::LandmarkParameters::kInverseDepthOnly) {
+      landmark.has_value = FixByAnchorPixel(rig_, &landmark);
+    }
+  }
+}
+
+void WindowEstimator::Reintegrate() {
+  for (int i = 1; i <= newest(); ++i) {
+    WindowFrame& frame = frames_[i];
+    const WindowFrame& before = frames_[i - 1];
+    if (!frame.link) continue;
+    if (DistanceFromLinearization(frame.link->delta, before.state.biases, rig_.imu) >
+        options_.reintegration_threshold) {
+      frame.link =
+          Integrate(before.state.instant, frame.state.instant, before.state.biases, rig_.imu);
+    }
+  }
+}
+
+void WindowEstimator::SelectLandmarks() {
+  std::vector<Landmark>& landmarks = table_.landmarks();
+  selection_.clear();
+  for (int l = 0; l < static_cast<int>(landmarks.size()); ++l) {
+    Landmark& landmark = landmarks[l];
+    landmark.in_problem = false;
+    if (!landmark.has_value || landmark.observations.size() < 2) continue;
+    Eigen::Vector2d r;
+    for (const LandmarkObservation& o : landmark.observations) {
+      landmark.has_value =
+          landmark.has_value && EvaluateReprojection(reprojection_, linearizer_.now(), frames_,
+                                                     landmark.anchor(), o, landmark.value, &r);
+    }
+    if (landmark.has_value) selection_.push_back(l);
+  }
+  if (static_cast<int>(selection_.size()) > options_.max_landmarks) {
+    std::stable_sort(selection_.begin(), selection_.end(), [&](int a, int b) {
+      return landmarks[a].observations.size() > landmarks[b].observations.size();
+    });
+    selection_.resize(options_.max_landmarks);
+  }
+  for (const int l : selection_) {
+    landmarks[l].in_problem = true;
+    output_.features.used += landmarks[l].seen_newest ? 1 : 0;
+  }
+}
+
+void WindowEstimator::BuildProblem() {
+  const StageTimer::Scope scope(timer_, "build");
+  Reintegrate();
+  SelectLandmarks();
+  problem_.Build(frames_, rig_, table_.landmarks(), prior_);
+}
+
+void WindowEstimator::Solve() {
+  const StageTimer::Scope scope(timer_, "solve");
+  summary_ = problem_.Solve();
+  if (!summary_.usable) {
+    Fail("the solver found no solution: " + summary_.message);
+    return;
+  }
+  problem_.Store(&frames_, &rig_, &table_.landmarks());
+  rig_.t_d_s = std::clamp(rig_.t_d_s, -setup_.shared.max_abs_t_d_s, setup_.shared.max_abs_t_d_s);
+  const double max_t_r_s = std::max(setup_.shared.max_abs_t_r_s, std::abs(setup_.rig.t_r_s));
+  rig_.t_r_s = std::clamp(rig_.t_r_s, -max_t_r_s, max_t_r_s);
+  linearizer_.SetWindow(frames_, rig_);
+}
+
+void WindowEstimator::RejectOutliers() {
+  const StageTimer::Scope scope(timer_, "reject");
+  const double bound = options_.max_reprojection_sigmas;
+  for (Landmark& landmark : table_.landmarks()) {
+    if (!landmark.in_problem) continue;
+    bool good = landmark.value.allFinite();
+    Eigen::Vector2d r;
+    for (const LandmarkObservation& o : landmark.observations) {
+      if (!good) break;
+      good = EvaluateReprojection(reprojection_, linearizer_.now(), frames_, landmark.anchor(), o,
+                                  landmark.value, &r) &&
+             (bound == 0.0 || r.squaredNorm() <= bound * bound);
+    }
+    if (good) continue;
+    landmark.observations.clear();
+    ++output_.features.gated;
+  }
+  table_.RemoveEmpty();
+}
+
+void WindowEstimator::DecideKeyframe() {
+  keyframe_ = true;
+  if (newest() < 2 || options_.keyframes == WindowOptions::Keyframes::kEveryFrame) return;
+  const int second = newest() - 1;
+  const int before = newest() - 2;
+  const bool at_rest = frames_[newest()].at_rest_since_before;
+  const double interval_s =
+      SecondsBetween(frames_[before].state.instant, frames_[newest()].state.instant);
+  if (!at_rest && interval_s > options_.max_keyframe_interval_s) return;
+  const MeanMotion motion = MeanPixelMotion(table_.landmarks(), before, second);
+  keyframe_ =
+      motion.tracks < options_.min_common_tracks || motion.mean_px >= options_.min_parallax_px;
+}
+
+void WindowEstimator::CheckHealth() {
+  const InertialState& state = frames_.back().state;
+  const bool finite = state.nav.R_GB.coeffs().allFinite() && state.nav.p_GB.allFinite() &&
+                      state.nav.v_GB.allFinite() && state.biases.b_g.allFinite() &&
+                      state.biases.b_a.allFinite();
+  if (!finite) return Fail("the state is not finite");
+  if (state.nav.v_GB.norm() > options_.max_velocity_m_per_s) {
+    return Fail("the velocity is beyond max_velocity_m_per_s");
+  }
+  if (state.biases.b_g.norm() > options_.max_b_g_rad_per_s) {
+    return Fail("the gyroscope's bias is beyond max_b_g_rad_per_s");
+  }
+  if (state.biases.b_a.norm() > options_.max_b_a_m_per_s2) {
+    return Fail("the accelerometer's bias is beyond max_b_a_m_per_s2");
+  }
+}
+
+void WindowEstimator::Report() {
+  const StageTimer::Scope scope(timer_, "covariance");
+  CheckHealth();
+  output_.iterations = summary_.iterations;
+  output_.keyframe = keyframe_;
+  output_.standstill = frames_.back().at_rest_since_before;
+  if (output_.status == EstimatorStatus::kFailed) return;
+  output_.state = frames_.back().state;
+  output_.rig = rig_;
+
+  NormalEquations equations(newest() + 1, layout_);
+  for (int i = 1; i <= newest(); ++i) linearizer_.AddLink(i, &equations);
+  for (const Landmark& landmark : table_.landmarks()) {
+    if (landmark.in_problem) linearizer_.AddLandmark(landmark, newest(), &equations);
+  }
+  InformationForm form = equations.Take();
+  AddPrior(prior_, newest() + 1, layout_, &form);
+  Eigen::MatrixXd covariance = NewestCovariance(form.H, layout_.size());
+  if (covariance.size() == 0) return Fail("the information matrix is not positive definite");
+  output_.covariance = std::move(covariance);
+
+  const bool enough = output_.features.used >= options_.min_landmarks;
+  const bool held = enough || output_.standstill;
+  output_.status = held ? EstimatorStatus::kTracking : EstimatorStatus::kDeadReckoning;
+  output_.reason = held ? "" : "too few landmarks in the newest frame";
+}
+
+void WindowEstimator::Slide() {
+  const StageTimer::Scope scope(timer_, "slide");
+  if (output_.status == EstimatorStatus::kFailed) return;
+  if (dropped_frame_ >= 0) {
+    table_.DropFrame(dropped_frame_, linearizer_.now());
+    frames_.erase(frames_.begin() + dropped_frame_);
+  }
+  imu_.DropBefore(frames_.front().state.instant - ToNanoseconds(rate_reach_s_));
+}
+
+std::optional<NavState> WindowEstimator::PredictAt(Timestamp t) const {
+  if (frames_.empty() || output_.status == EstimatorStatus::kFailed) return std::nullopt;
+  const InertialState& state = frames_.back().state;
+  if (t == state.instant) return state.nav;
+  if (imu_.empty() || !imu_.Covers(state.instant, t)) return std::nullopt;
+  std::vector<ImuSample> readings;
+  imu_.Extract(state.instant, t, &readings);
+  const ImuDeltaOptions motion_only{
+      .covariance = false, .bias_jacobians = false, .calibration_jacobians = false};
+  return Predict(state.nav,
+                 IntegrateImu(readings, state.biases, rig_.imu, setup_.imu_noise, motion_only),
+                 setup_.g_G);
+}
+
+}  // namespace duet
