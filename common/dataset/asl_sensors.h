@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,9 +26,11 @@ struct ImuSensor {
 /// What cam<k>/sensor.yaml or tracks<k>/sensor.yaml tells.
 struct CameraSensor {
   CameraCalibration calibration;  ///< of T_BS, inverted once, here
-  double rate_hz = 0.0;           ///< 0: not told
-  double t_d_s = 0.0;             ///< optional key time_offset_s: taken at stamp + t_d
-  double t_r_s = 0.0;             ///< optional key readout_time_s
+  /// T_BS as told: written again with the same digits, so that a replay has the same bits.
+  std::optional<Eigen::Matrix4d> T_BS;
+  double rate_hz = 0.0;  ///< 0: not told
+  double t_d_s = 0.0;    ///< optional key time_offset_s: taken at stamp + t_d
+  double t_r_s = 0.0;    ///< optional key readout_time_s
   bool readout_by_columns = false;
   /// Of a track stream, where known: how it was made.
   std::string frontend_settings_sha256;
@@ -42,8 +46,8 @@ struct CameraSensor {
 /// T_BS of any sensor (identity where the file has none).
 [[nodiscard]] Pose ReadSensorPose(std::string_view yaml, const std::string& file);
 
-/// The same as text; reading gives the same numbers again (the extrinsics to rounding, because
-/// T_BS is the inverse of what is held).
+/// The same as text; reading gives the same numbers again (extrinsics that do not come from T_BS to
+/// rounding, because they are written as their inverse).
 [[nodiscard]] std::string WriteImuSensor(const ImuSensor& sensor);
 [[nodiscard]] std::string WriteCameraSensor(const CameraSensor& sensor);
 
