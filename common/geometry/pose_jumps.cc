@@ -64,27 +64,39 @@ Eigen::Vector3d BestJump(const Departures& departures, std::size_t i, double* ga
 }
 
 // Takes jumps out of the departures, the one that explains most first, until none is longer than
-// `threshold`. The sum of what was taken out of each interval.
+// `threshold`; then settles the sizes of those that were found. The sum of what was taken out of
+// each interval.
 std::vector<Eigen::Vector3d> TakeOutJumps(Departures departures, double threshold) {
   const std::size_t n = departures.size();
   std::vector<Eigen::Vector3d> total(n, Eigen::Vector3d::Zero());
-  std::vector<Eigen::Vector3d> jumps(n);
   std::vector<double> gains(n);
-  const auto update = [&](std::size_t i) {
-    jumps[i] = BestJump(departures, i, &gains[i]);
-    if (jumps[i].norm() <= threshold) gains[i] = 0.0;
-  };
-  for (std::size_t i = 0; i < n; ++i) update(i);
-  // Each round removes at least threshold^2 / 2 of the sum of squares; the bound is for safety.
-  for (std::size_t round = 0; round < 10 * n; ++round) {
-    const auto best = std::max_element(gains.begin(), gains.end());
-    if (best == gains.end() || *best <= 0.0) break;
-    const auto i = static_cast<std::size_t>(best - gains.begin());
-    const Eigen::Vector3d jump = jumps[i];
+  std::vector<bool> found(n, false);
+  const auto take_out = [&](std::size_t i) {
+    double gain = 0.0;
+    const Eigen::Vector3d jump = BestJump(departures, i, &gain);
     total[i] += jump;
     departures[i].value -= jump;
     if (i + 1 < n) departures[i + 1].value += departures[i + 1].echo * jump;
-    for (std::size_t k = i == 0 ? 0 : i - 1; k < std::min(n, i + 2); ++k) update(k);
+  };
+  const auto update_gain = [&](std::size_t i) {
+    if (BestJump(departures, i, &gains[i]).norm() <= threshold) gains[i] = 0.0;
+  };
+  for (std::size_t i = 0; i < n; ++i) update_gain(i);
+  // Each round takes at least threshold^2 / 2 from the sum of squares; the bound is for safety.
+  for (std::size_t round = 0; round < 10 * n; ++round) {
+    const auto best = std::max_element(gains.begin(), gains.end());
+    if (*best <= 0.0) break;
+    const auto i = static_cast<std::size_t>(best - gains.begin());
+    found[i] = true;
+    take_out(i);
+    for (std::size_t k = i == 0 ? 0 : i - 1; k < std::min(n, i + 2); ++k) update_gain(k);
+  }
+  // Neighbouring jumps share a departure: Gauss-Seidel, which takes a quarter a sweep for two.
+  constexpr int kSweeps = 30;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (std::size_t i = 0; i < n; ++i) {
+      if (found[i]) take_out(i);
+    }
   }
   return total;
 }

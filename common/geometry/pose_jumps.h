@@ -55,7 +55,7 @@ struct PoseJumpOptions {
     const Eigen::Vector3d& g_G, const PoseJumpOptions& options = {});
 
 /// The same without an IMU: constant velocity and rate stand in for the motion. At 200 Hz that is
-/// as good (10 m/s^2 are 0.25 mm); at 20 Hz (25 mm) only large jumps stand out.
+/// as good in EuRoC's flights (1 m/s^2 is 0.025 mm); at 20 Hz only large jumps stand out.
 [[nodiscard]] std::vector<PoseJump> FindPoseJumps(const std::vector<StampedPose>& poses,
                                                   const PoseJumpOptions& options = {});
 
