@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <tuple>
 
 #include "common/geometry/interpolation.h"
@@ -64,7 +65,7 @@ void AssociateLikeEvo(const std::vector<StampedPose>& truth,
     const Index nearest = NearestIndex(longer, pose.timestamp);
     if (nearest < 0) return;
     const StampedPose& partner = longer[nearest];
-    if (std::abs(SecondsBetween(partner.timestamp, pose.timestamp)) > max_difference_s) continue;
+    if (std::abs(partner.timestamp - pose.timestamp) > ToNanoseconds(max_difference_s)) continue;
     result->pairs.push_back(estimate_longer ? MakePair(pose, partner) : MakePair(partner, pose));
   }
 }
@@ -175,7 +176,10 @@ std::optional<Pose> TruthAt(const std::vector<StampedPose>& truth, Timestamp t,
   if (JumpsBetween(options.truth_jumps, truth[after - 1].timestamp, truth[after].timestamp)) {
     return std::nullopt;
   }
-  return InterpolatePose(truth, t, options.max_truth_gap_s);
+  // On the integers: 60 ms in nanoseconds times 1e-9 is more than the double 0.06.
+  const Timestamp gap = truth[after].timestamp - truth[after - 1].timestamp;
+  if (gap > ToNanoseconds(options.max_truth_gap_s)) return std::nullopt;
+  return InterpolatePose(truth, t, std::numeric_limits<double>::infinity());
 }
 
 Association Associate(const std::vector<StampedPose>& truth,

@@ -42,7 +42,7 @@ struct AssociationOptions {
   double max_estimate_gap_s = 0.0;
   /// Instants at which the truth is known to jump (ascending): what would be interpolated across
   /// one is left out and counted.
-  std::vector<Timestamp> truth_jumps;
+  std::vector<Timestamp> truth_jumps = {};
 };
 
 struct TimeGap {

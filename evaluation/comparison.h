@@ -35,8 +35,8 @@ struct EstimatorRun {
 struct FrontendRun {
   bool replayed = false;  ///< the tracks came from a file: no times
   int frames = 0;
-  ErrorSummary tracking_ms;  ///< thread CPU time a frame, image decoding apart
-  ErrorSummary decoding_ms;
+  ErrorSummary tracking_ms = {};  ///< thread CPU time a frame, image decoding apart
+  ErrorSummary decoding_ms = {};
   double mean_tracks = std::numeric_limits<double>::quiet_NaN();  ///< a frame of one camera
 };
 
