@@ -77,8 +77,8 @@ void FeatureUpdate::GatherObservations(const FilterState& state, const FeatureTr
   candidate->anchor_clone = observations_[candidate->first_observation].clone;
 }
 
-std::span<const LandmarkObservation> FeatureUpdate::ObservationsOf(const Candidate& candidate) {
-  return std::span<const LandmarkObservation>(observations_)
+std::span<const CloneObservation> FeatureUpdate::ObservationsOf(const Candidate& candidate) {
+  return std::span<const CloneObservation>(observations_)
       .subspan(candidate.first_observation, candidate.observation_count);
 }
 

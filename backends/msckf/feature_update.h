@@ -61,7 +61,7 @@ class FeatureUpdate {
 
   void GatherObservations(const FilterState& state, const FeatureTrack& track,
                           Candidate* candidate);
-  [[nodiscard]] std::span<const LandmarkObservation> ObservationsOf(const Candidate& candidate);
+  [[nodiscard]] std::span<const CloneObservation> ObservationsOf(const Candidate& candidate);
 
   MsckfOptions options_;
   LinearizationSettings settings_;
@@ -70,7 +70,7 @@ class FeatureUpdate {
   VisualColumns columns_;
 
   std::vector<Candidate> candidates_;
-  std::vector<LandmarkObservation> observations_;
+  std::vector<CloneObservation> observations_;
   std::vector<TrackObservationInState> in_states_;  // one landmark's
   LandmarkRows H_f_;
   MeasurementRows rows_;

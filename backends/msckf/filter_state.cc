@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/geometry/so3.h"
 #include "common/support/logging.h"
 
 namespace duet {
@@ -68,6 +69,23 @@ void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& dx, double ma
   }
   for (int i = 0; i < static_cast<int>(clones_.size()); ++i) {
     clones_[i].nav = BoxPlus(clones_[i].nav, Vector9d(dx.segment<kCloneSize>(CloneOffset(i))));
+  }
+}
+
+void FilterState::Rebase() {
+  Eigen::Ref<Eigen::MatrixXd> P_all = P();
+  const auto rebase = [&](int offset, const NavState& nav, NavState* fej) {
+    const Eigen::Matrix3d M_p = -Hat(nav.p_GB - fej->p_GB);
+    const Eigen::Matrix3d M_v = -Hat(nav.v_GB - fej->v_GB);
+    P_all.middleRows<3>(offset + 3) += M_p * P_all.middleRows<3>(offset);
+    P_all.middleRows<3>(offset + 6) += M_v * P_all.middleRows<3>(offset);
+    P_all.middleCols<3>(offset + 3) += P_all.middleCols<3>(offset) * M_p.transpose();
+    P_all.middleCols<3>(offset + 6) += P_all.middleCols<3>(offset) * M_v.transpose();
+    *fej = nav;
+  };
+  rebase(0, inertial_.nav, &nav_fej_);
+  for (int i = 0; i < static_cast<int>(clones_.size()); ++i) {
+    rebase(CloneOffset(i), clones_[i].nav, &clones_[i].nav_fej);
   }
 }
 

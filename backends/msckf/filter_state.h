@@ -77,6 +77,12 @@ class FilterState {
   void Correct(const Eigen::Ref<const Eigen::VectorXd>& dx, double max_abs_t_d_s,
                double max_abs_t_r_s);
 
+  /// Takes the current values as first estimates, and the covariance with them: the error's
+  /// unobservable directions N(first estimates) become N(current estimates),
+  ///
+  ///   P <- M P M',   M: p_i += -[p_i - p_i,fej]x theta_i,   v_i += -[v_i - v_i,fej]x theta_i
+  void Rebase();
+
  private:
   CalibrationLayout layout_;
   int max_clones_;

@@ -84,7 +84,7 @@ int VisualColumns::CalibrationColumn(const CalibrationLayout& layout, Calibratio
 bool LinearizeLandmark(const FilterState& state, const VisualColumns& columns,
                        const LinearizationSettings& settings, int anchor_clone,
                        const InverseDepth& landmark,
-                       std::span<const LandmarkObservation> observations, LandmarkRowsRef H_f,
+                       std::span<const CloneObservation> observations, LandmarkRowsRef H_f,
                        MeasurementRowsRef rows) {
   CHECK_EQ(rows.rows(), static_cast<Eigen::Index>(2 * observations.size()));
   const bool time_matters = TimeMatters(state);
@@ -93,7 +93,7 @@ bool LinearizeLandmark(const FilterState& state, const VisualColumns& columns,
   rows.setZero();
   ObservationJacobians J;
   for (std::size_t k = 0; k < observations.size(); ++k) {
-    const LandmarkObservation& observation = observations[k];
+    const CloneObservation& observation = observations[k];
     const Clone& clone = state.clones()[observation.clone];
     TwoRowsRef two_rows = rows.middleRows<2>(static_cast<Eigen::Index>(2 * k));
     Eigen::Vector2d predicted;

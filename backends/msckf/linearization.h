@@ -41,7 +41,7 @@ class VisualColumns {
 [[nodiscard]] bool TimeMatters(const FilterState& state);
 
 /// A pixel of the landmark that is being linearized.
-struct LandmarkObservation {
+struct CloneObservation {
   int clone = 0;  ///< index into FilterState::clones()
   PixelObservation pixel;
 };
@@ -64,7 +64,7 @@ struct LinearizationSettings {
 [[nodiscard]] bool LinearizeLandmark(const FilterState& state, const VisualColumns& columns,
                                      const LinearizationSettings& settings, int anchor_clone,
                                      const InverseDepth& landmark,
-                                     std::span<const LandmarkObservation> observations,
+                                     std::span<const CloneObservation> observations,
                                      LandmarkRowsRef H_f, MeasurementRowsRef rows);
 
 }  // namespace duet

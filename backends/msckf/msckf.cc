@@ -181,6 +181,7 @@ void Msckf::ApplyUpdate(const Eigen::Ref<const Eigen::MatrixXd>& H_r,
     return;
   }
   state_.Correct(dx_, setup_.shared.max_abs_t_d_s, setup_.shared.max_abs_t_r_s);
+  if (options_.rebase) state_.Rebase();
 }
 
 void Msckf::Prune() {

@@ -7,6 +7,7 @@ namespace duet {
 struct MsckfOptions {
   int max_clones = 11;
   bool first_estimates = true;
+  int rebase = 0;
   int min_observations = 4;
   int max_landmarks_per_update = 40;
   bool gate = true;
