@@ -139,7 +139,7 @@ Timestamp CsvReader::CheckLater(int column, Timestamp stamp) {
          "the stamp " + std::string(Text(column)) + " stands twice; expected stamps that increase");
   }
   if (has_stamp_ && stamp < last_stamp_) {
-    Fail(column, "time goes backwards by " + FormatNumber(SecondsBetween(stamp, last_stamp_)) +
+    Fail(column, "time goes backwards by " + FormatDuration(last_stamp_ - stamp) +
                      " s; expected stamps that increase");
   }
   has_stamp_ = true;

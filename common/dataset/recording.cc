@@ -244,8 +244,7 @@ class Loader {
       throw InputError(recording_.folder.string(), 0, "",
                        "has no frame in the span asked for (from " +
                            FormatNumber(options_.start_s) + " s on); the recording has " +
-                           FormatNumber(SecondsBetween(stamps.front(), stamps.back())) +
-                           " s of frames");
+                           FormatDuration(stamps.back() - stamps.front()) + " s of frames");
     }
   }
 
@@ -277,9 +276,9 @@ class Loader {
       const Timestamp end = recording_.imu[i].timestamp;
       if (end <= frames.front() || start >= frames.back() || end - start <= frame_step) continue;
       throw InputError(file, 0, "timestamp [ns]",
-                       "gap of " + FormatNumber(SecondsBetween(start, end)) + " s after " +
+                       "gap of " + FormatDuration(end - start) + " s after " +
                            std::to_string(start) + "; expected at most the time between frames, " +
-                           FormatNumber(SecondsBetween(0, frame_step)) + " s");
+                           FormatDuration(frame_step) + " s");
     }
   }
 

@@ -59,7 +59,7 @@ struct RecordingOptions {
   };
   Source source = Source::kAuto;
   /// Where tracks<k> lie; empty: beside imu0.
-  std::filesystem::path tracks_folder;
+  std::filesystem::path tracks_folder = {};
   /// Frames from this long after the first one on, for so long (0: to the end), s. IMU and truth
   /// stay whole.
   double start_s = 0.0;

@@ -144,4 +144,11 @@ std::string FormatSeconds(Timestamp t) {
   return text;
 }
 
+std::string FormatDuration(Timestamp duration) {
+  std::string text = FormatSeconds(duration);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return text;
+}
+
 }  // namespace duet

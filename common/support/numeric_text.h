@@ -40,5 +40,7 @@ void AppendSeconds(Timestamp t, std::string* text);
 /// With `decimals` digits after the point.
 [[nodiscard]] std::string FormatFixed(double value, int decimals);
 [[nodiscard]] std::string FormatSeconds(Timestamp t);
+/// Seconds without trailing zeros, for sentences: "0.12".
+[[nodiscard]] std::string FormatDuration(Timestamp duration);
 
 }  // namespace duet

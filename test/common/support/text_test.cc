@@ -73,6 +73,8 @@ TEST(NumericText, SecondsArePrintedFromTheInteger) {
   EXPECT_EQ(FormatSeconds(5), "0.000000005");
   EXPECT_EQ(FormatSeconds(-1500000000), "-1.500000000");
   EXPECT_EQ(FormatSeconds(std::numeric_limits<Timestamp>::min()), "-9223372036.854775808");
+  EXPECT_EQ(FormatDuration(120000000), "0.12");
+  EXPECT_EQ(FormatDuration(3000000000), "3");
   Random random(2);
   for (int i = 0; i < 1000; ++i) {
     const auto t = static_cast<Timestamp>(random.Next() >> 1);
