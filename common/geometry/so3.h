@@ -6,8 +6,8 @@
 namespace duet {
 
 /// The rotation group. Vectors are in rad; Exp(theta) rotates by |theta| about theta. The
-/// exponential, its inverse and their Jacobians are exact to rounding at every angle: below 1e-4
-/// rad (where the closed forms cancel) by their Taylor series.
+/// exponential, its inverse and their Jacobians are exact to rounding at every angle: where the
+/// closed forms cancel (below 0.5 rad at the worst) by their series.
 
 /// [v]x with [v]x w = v x w.
 [[nodiscard]] Eigen::Matrix3d Hat(const Eigen::Vector3d& v);
