@@ -9,11 +9,13 @@
 #include "common/geometry/so3.h"
 #include "common/support/logging.h"
 #include "common/support/random.h"
+#include "frontend/anchor_patch.h"
 #include "frontend/feature_grid.h"
 #include "frontend/gyro_rotation.h"
 #include "frontend/klt_tracker.h"
 #include "frontend/outlier_rejection.h"
 #include "frontend/stereo_matcher.h"
+#include "frontend/track_history.h"
 
 namespace duet {
 namespace {
@@ -23,6 +25,7 @@ struct Track {
   std::uint64_t id = 0;
   cv::Point2f point;                    // raw px
   Eigen::Vector3d ray;                  // (x, y, 1)
+  std::size_t patch = 0;                // index into the pool
   std::optional<double> inverse_depth;  // of the last stereo match, 1/m
 };
 
@@ -50,13 +53,18 @@ class Frontend::Impl {
   void BuildPyramids(std::span<const cv::Mat> images);
   void PredictRotation(Timestamp timestamp);
   void FollowTracks();
+  void CorrectByAnchors();
+  void UpdateRays();
   void RejectOutliers(Timestamp timestamp);
+  void RejectDrifters();
   void KeepApart();
   void DetectNew();
   void MatchStereo(std::size_t camera);
   void WriteFrames(Timestamp timestamp);
 
+  /// Ends the tracks (and drops the entries of previous_ and history_entries_) that are not kept.
   void Keep(const std::vector<bool>& keep, int* lost);
+  void ListEntries();
 
   FrontendOptions options_;
   RigCalibration rig_;
@@ -64,13 +72,18 @@ class Frontend::Impl {
   FeatureGrid grid_;
   GyroRotation gyro_;
   Random random_;
+  double focal_px_;
   std::vector<StereoMatcher> stereo_;  // camera 1, 2, ...
   cv::Ptr<cv::CLAHE> clahe_;
 
   std::optional<Timestamp> last_;
   std::uint64_t next_id_ = 0;
-  std::vector<Track> tracks_;                             // ascending id: the oldest first
-  std::vector<Track> previous_;                           // the same tracks in the frame before
+  std::vector<Track> tracks_;                  // ascending id: the oldest first
+  std::vector<TrackHistory::Entry> previous_;  // the same tracks in the frame before
+  TrackHistory history_;
+  PatchShape patch_shape_;
+  std::vector<AnchorPatch> patches_;  // pool, max_tracks of them
+  std::vector<std::size_t> free_patches_;
   Eigen::Matrix3d R_C1C0_ = Eigen::Matrix3d::Identity();  // first camera, previous to newest frame
   bool rotation_known_ = false;
   std::vector<ImagePyramid> pyramids_;  // of the newest images, one a camera; empty: no image
@@ -82,7 +95,10 @@ class Frontend::Impl {
   std::vector<cv::Point2f> found_;
   std::vector<FlowStatus> status_;
   std::vector<bool> keep_;
+  std::vector<bool> fits_;
   std::vector<RayPair> pairs_;
+  std::vector<std::size_t> indices_;
+  std::vector<TrackHistory::Entry> entries_;
   std::vector<StereoQuery> queries_;
   std::vector<std::optional<StereoMatch>> matches_;
 };
@@ -96,12 +112,18 @@ Frontend::Impl::Impl(const FrontendOptions& options, int max_tracks, const RigCa
             cv::Size(rig.cameras.at(0).model.width_px(), rig.cameras.at(0).model.height_px())),
       gyro_(rig.imu),
       random_(seed),
+      focal_px_(0.5 *
+                (rig.cameras[0].model.parameters()[0] + rig.cameras[0].model.parameters()[1])),
+      history_(options.outlier_lag),
+      patch_shape_(options.anchor_half_window_px),
+      patches_(static_cast<std::size_t>(max_tracks)),
       pyramids_(rig.cameras.size()),
       equalized_(rig.cameras.size()) {
   for (std::size_t camera = 1; camera < rig.cameras.size(); ++camera) {
     stereo_.emplace_back(options, rig.cameras[0], rig.cameras[camera]);
   }
   if (options.clahe) clahe_ = cv::createCLAHE(options.clahe_clip_limit);
+  for (std::size_t i = 0; i < patches_.size(); ++i) free_patches_.push_back(i);
   cv::setNumThreads(options.threads);
 }
 
@@ -112,11 +134,16 @@ const TrackFrameSet& Frontend::Impl::Process(Timestamp timestamp, std::span<cons
   if (last_) {
     PredictRotation(timestamp);
     FollowTracks();
+    CorrectByAnchors();
+    UpdateRays();
     RejectOutliers(timestamp);
+    RejectDrifters();
     KeepApart();
   }
   statistics_.frame.kept = static_cast<int>(tracks_.size());
   DetectNew();
+  ListEntries();
+  history_.Push(R_C1C0_, entries_);
   WriteFrames(timestamp);
   for (std::size_t camera = 1; camera < rig_.cameras.size(); ++camera) MatchStereo(camera);
   last_ = timestamp;
@@ -159,37 +186,61 @@ void Frontend::Impl::FollowTracks() {
   const StageTimer::Scope scope(timer_, "klt");
   points_.clear();
   found_.clear();
+  previous_.clear();
   for (const Track& track : tracks_) {
     points_.push_back(track.point);
+    previous_.push_back({track.id, track.ray});
     Eigen::Vector2d guess = ToVector(track.point);
     if (options_.gyro_prediction) (void)first().model.Project(R_C1C0_ * track.ray, &guess);
     found_.push_back(ToPoint(guess));
   }
   tracker_.Track(previous_pyramid_, pyramids_[0], points_, options_.forward_backward_px, &found_,
                  &status_);
-  previous_.clear();
-  std::size_t kept = 0;
+  keep_.assign(tracks_.size(), true);
+  int lost = 0;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (status_[i] == FlowStatus::kBackwardMismatch) {
-      ++statistics_.frame.lost_backward;
-      continue;
-    }
-    const Eigen::Vector2d uv = ToVector(found_[i]);
-    std::optional<Eigen::Vector3d> ray;
-    if (status_[i] == FlowStatus::kTracked && first().model.Contains(uv, -options_.border_px)) {
-      ray = first().model.Unproject(uv);
-    }
-    if (!ray) {
-      ++statistics_.frame.lost_flow;
-      continue;
-    }
-    previous_.push_back(tracks_[i]);
-    tracks_[kept] = tracks_[i];
-    tracks_[kept].point = found_[i];
-    tracks_[kept].ray = *ray;
-    ++kept;
+    tracks_[i].point = found_[i];
+    keep_[i] = status_[i] == FlowStatus::kTracked;
+    if (status_[i] == FlowStatus::kBackwardMismatch) ++statistics_.frame.lost_backward;
+    if (status_[i] == FlowStatus::kNotFound) ++statistics_.frame.lost_flow;
   }
-  tracks_.resize(kept);
+  Keep(keep_, &lost);
+}
+
+void Frontend::Impl::CorrectByAnchors() {
+  const StageTimer::Scope scope(timer_, "anchor");
+  if (!options_.anchor) return;
+  const cv::Mat& image = pyramids_[0].front();
+  keep_.assign(tracks_.size(), true);
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    Track& track = tracks_[i];
+    AnchorPatch& patch = patches_[track.patch];
+    const auto find = [&] {
+      return patch.Find(patch_shape_, image, options_.anchor_max_shift_px,
+                        options_.anchor_min_correlation, &track.point);
+    };
+    if (find() == AnchorPatch::Outcome::kFound) continue;
+    // What served for a while has changed its looks (another distance or direction) and starts
+    // again from the frame before; what never did is no point of the scene.
+    Eigen::Vector2d last;
+    keep_[i] = patch.age() >= options_.anchor_min_age &&
+               first().model.Project(previous_[i].ray, &last) &&
+               patch.Take(patch_shape_, previous_pyramid_.front(), ToPoint(last)) &&
+               find() == AnchorPatch::Outcome::kFound;
+  }
+  Keep(keep_, &statistics_.frame.lost_anchor);
+}
+
+void Frontend::Impl::UpdateRays() {
+  keep_.assign(tracks_.size(), true);
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const Eigen::Vector2d uv = ToVector(tracks_[i].point);
+    std::optional<Eigen::Vector3d> ray;
+    if (first().model.Contains(uv, -options_.border_px)) ray = first().model.Unproject(uv);
+    keep_[i] = ray.has_value();
+    if (ray) tracks_[i].ray = *ray;
+  }
+  Keep(keep_, &statistics_.frame.lost_flow);
 }
 
 void Frontend::Impl::RejectOutliers(Timestamp timestamp) {
@@ -199,15 +250,30 @@ void Frontend::Impl::RejectOutliers(Timestamp timestamp) {
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     pairs_.push_back({previous_[i].ray, tracks_[i].ray});
   }
-  const CameraModel::Parameters& parameters = first().model.parameters();
-  const EpipolarOptions options{.iterations = options_.ransac_iterations,
-                                .focal_px = 0.5 * (parameters[0] + parameters[1]),
-                                .threshold_px = options_.outlier_threshold_px};
-  const EpipolarMotion motion = FindEpipolarMotion(pairs_, R_C1C0_, options, &random_, &keep_);
+  const EpipolarMotion motion = FindEpipolarMotion(pairs_, R_C1C0_,
+                                                   {.iterations = options_.ransac_iterations,
+                                                    .focal_px = focal_px_,
+                                                    .threshold_px = options_.outlier_threshold_px},
+                                                   &random_, &keep_);
   if (motion.valid && rotation_known_) {
     gyro_.LearnBias(first().R_CB.conjugate() * motion.delta, SecondsBetween(*last_, timestamp));
     statistics_.b_g = gyro_.b_g();
   }
+  Keep(keep_, &statistics_.frame.lost_outlier);
+}
+
+void Frontend::Impl::RejectDrifters() {
+  const StageTimer::Scope scope(timer_, "outliers");
+  if (!options_.outlier_rejection) return;
+  ListEntries();
+  const Eigen::Matrix3d R = history_.PairWithOldest(R_C1C0_, entries_, &pairs_, &indices_);
+  (void)FindEpipolarMotion(pairs_, R,
+                           {.iterations = options_.ransac_iterations,
+                            .focal_px = focal_px_,
+                            .threshold_px = options_.outlier_lag_threshold_px},
+                           &random_, &fits_);
+  keep_.assign(tracks_.size(), true);
+  for (std::size_t i = 0; i < indices_.size(); ++i) keep_[indices_[i]] = fits_[i];
   Keep(keep_, &statistics_.frame.lost_outlier);
 }
 
@@ -222,11 +288,21 @@ void Frontend::Impl::KeepApart() {
 void Frontend::Impl::Keep(const std::vector<bool>& keep, int* lost) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (!keep[i]) continue;
-    tracks_[kept++] = tracks_[i];
+    if (keep[i]) {
+      previous_[kept] = previous_[i];
+      tracks_[kept++] = tracks_[i];
+    } else {
+      free_patches_.push_back(tracks_[i].patch);
+    }
   }
   *lost += static_cast<int>(tracks_.size() - kept);
   tracks_.resize(kept);
+  previous_.resize(kept);
+}
+
+void Frontend::Impl::ListEntries() {
+  entries_.clear();
+  for (const Track& track : tracks_) entries_.push_back({track.id, track.ray});
 }
 
 void Frontend::Impl::DetectNew() {
@@ -237,7 +313,10 @@ void Frontend::Impl::DetectNew() {
   for (const cv::Point2f& corner : found_) {
     const std::optional<Eigen::Vector3d> ray = first().model.Unproject(ToVector(corner));
     if (!ray) continue;
-    tracks_.push_back({next_id_++, corner, *ray, std::nullopt});
+    const std::size_t patch = free_patches_.back();
+    free_patches_.pop_back();
+    if (options_.anchor) patches_[patch].Take(patch_shape_, pyramids_[0].front(), corner);
+    tracks_.push_back({next_id_++, corner, *ray, patch, std::nullopt});
     ++statistics_.frame.detected;
   }
 }
@@ -260,6 +339,7 @@ void Frontend::Impl::WriteFrames(Timestamp timestamp) {
   total.detected += frame.detected;
   total.lost_flow += frame.lost_flow;
   total.lost_backward += frame.lost_backward;
+  total.lost_anchor += frame.lost_anchor;
   total.lost_outlier += frame.lost_outlier;
   total.lost_crowded += frame.lost_crowded;
 }

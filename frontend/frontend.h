@@ -20,6 +20,7 @@ struct FrontendCounts {
   int detected = 0;          ///< new tracks
   int lost_flow = 0;         ///< the patch was not found, or left the image
   int lost_backward = 0;     ///< forward-backward check
+  int lost_anchor = 0;       ///< no longer look like the patch that they were
   int lost_outlier = 0;      ///< contradict the epipolar geometry
   int lost_crowded = 0;      ///< too near to an older track
   int stereo_matched = 0;    ///< observations in the further cameras
@@ -60,8 +61,8 @@ class Frontend {
 
   [[nodiscard]] const FrontendStatistics& statistics() const;
 
-  /// Stages ("pyramid", "klt", "outliers", "detect", "stereo") are timed into it where it is not
-  /// null; not owned.
+  /// Stages ("pyramid", "klt", "anchor", "outliers", "detect", "stereo") are timed into it where it
+  /// is not null; not owned.
   void set_stage_timer(StageTimer* timer);
 
  private:

@@ -11,7 +11,7 @@ struct FrontendOptions {
   int features_per_cell = 3;
   int fast_threshold_min = 7;
   int fast_threshold_max = 80;
-  double min_corner_quality = 2.0;
+  double min_corner_quality = 20.0;
   double min_distance_px = 18.0;
   int border_px = 8;
   int subpixel_half_window_px = 4;
@@ -25,11 +25,18 @@ struct FrontendOptions {
   double klt_epsilon_px = 0.01;
   double forward_backward_px = 0.5;
   bool gyro_prediction = true;
+  bool anchor = true;
+  int anchor_half_window_px = 8;
+  double anchor_max_shift_px = 1.0;
+  double anchor_min_correlation = 0.85;
+  int anchor_min_age = 3;
 
   // Outlier rejection.
   bool outlier_rejection = true;
   int ransac_iterations = 48;
   double outlier_threshold_px = 1.0;
+  int outlier_lag = 8;
+  double outlier_lag_threshold_px = 1.2;
 
   // Stereo.
   double stereo_epipolar_px = 1.5;
@@ -97,6 +104,23 @@ struct FrontendOptions {
              .max = 50});
     v.Field("gyro_prediction", &gyro_prediction,
             {.doc = "Start the search where the gyroscope's rotation says."});
+    v.Field("anchor", &anchor,
+            {.doc = "Correct each track by the patch in which it was first seen, so that errors of "
+                    "the flow do not add up."});
+    v.Field("anchor_half_window_px", &anchor_half_window_px,
+            {.doc = "Radius of that patch.", .unit = "px", .min = 3, .max = 30});
+    v.Field("anchor_max_shift_px", &anchor_max_shift_px,
+            {.doc = "Largest correction in a frame; a patch that is further off is not the point.",
+             .unit = "px",
+             .min = 0.05,
+             .max = 10});
+    v.Field("anchor_min_correlation", &anchor_min_correlation,
+            {.doc = "The patch counts as found from this correlation on.", .min = 0, .max = 1});
+    v.Field("anchor_min_age", &anchor_min_age,
+            {.doc = "A patch that is no longer found is taken anew where the point was last if it "
+                    "had served for this long; a younger one ends its track.",
+             .unit = "frames",
+             .min = 0});
     v.Field("outlier_rejection", &outlier_rejection,
             {.doc = "Drop tracks that contradict the epipolar geometry of two frames."});
     v.Field("ransac_iterations", &ransac_iterations,
@@ -106,6 +130,17 @@ struct FrontendOptions {
     v.Field(
         "outlier_threshold_px", &outlier_threshold_px,
         {.doc = "Largest distance from the epipolar line.", .unit = "px", .min = 0.05, .max = 50});
+    v.Field("outlier_lag", &outlier_lag,
+            {.doc = "The same test against the frame this many before, where slow drift shows; 0: "
+                    "not at all.",
+             .unit = "frames",
+             .min = 0,
+             .max = 100});
+    v.Field("outlier_lag_threshold_px", &outlier_lag_threshold_px,
+            {.doc = "Largest distance from the epipolar line in that test.",
+             .unit = "px",
+             .min = 0.05,
+             .max = 50});
     v.Field("stereo_epipolar_px", &stereo_epipolar_px,
             {.doc = "Largest distance from the epipolar line that the told extrinsics give.",
              .unit = "px",
