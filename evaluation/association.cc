@@ -29,7 +29,7 @@ Index FirstNotBefore(const std::vector<StampedPose>& poses, Timestamp t) {
 
 bool JumpsBetween(const std::vector<Timestamp>& jumps, Timestamp start, Timestamp end) {
   const auto jump = std::lower_bound(jumps.begin(), jumps.end(), start);
-  return jump != jumps.end() && *jump <= end;
+  return jump != jumps.end() && *jump < end;
 }
 
 PosePair MakePair(const StampedPose& truth, const StampedPose& estimate) {
@@ -45,14 +45,52 @@ Index NearestIndex(const std::vector<StampedPose>& poses, Timestamp t) {
   return t - poses[after - 1].timestamp <= poses[after].timestamp - t ? after - 1 : after;
 }
 
-void AssociateInterpolated(const std::vector<StampedPose>& truth,
-                           const std::vector<StampedPose>& estimate,
-                           const AssociationOptions& options, Association* result) {
+enum class TruthIs { kKnown, kOutside, kInGap, kAtJump };
+
+TruthIs TruthAt(const std::vector<StampedPose>& truth, Timestamp t,
+                const AssociationOptions& options, Pose* T_GB) {
+  const Index after = FirstNotBefore(truth, t);
+  if (after == static_cast<Index>(truth.size())) return TruthIs::kOutside;
+  if (truth[after].timestamp == t) {
+    *T_GB = truth[after].T_GB;
+    return TruthIs::kKnown;
+  }
+  if (after == 0) return TruthIs::kOutside;
+  const Timestamp start = truth[after - 1].timestamp;
+  const Timestamp end = truth[after].timestamp;
+  if (JumpsBetween(options.truth_jumps, start, end)) return TruthIs::kAtJump;
+  // On the integers: 60 ms in nanoseconds times 1e-9 is more than the double 0.06.
+  if (end - start > ToNanoseconds(options.max_truth_gap_s)) return TruthIs::kInGap;
+  const auto interpolated = InterpolatePose(truth, t, std::numeric_limits<double>::infinity());
+  CHECK(interpolated.has_value());
+  *T_GB = *interpolated;
+  return TruthIs::kKnown;
+}
+
+/// Returns the stamps of the poses that lie in gaps of the truth.
+std::vector<Timestamp> AssociateInterpolated(const std::vector<StampedPose>& truth,
+                                             const std::vector<StampedPose>& estimate,
+                                             const AssociationOptions& options,
+                                             Association* result) {
+  std::vector<Timestamp> in_gap;
   for (const StampedPose& pose : estimate) {
-    if (const auto T_GB_true = TruthAt(truth, pose.timestamp, options)) {
-      result->pairs.push_back({pose.timestamp, *T_GB_true, pose.T_GB});
+    Pose T_GB_true;
+    switch (TruthAt(truth, pose.timestamp, options, &T_GB_true)) {
+      case TruthIs::kKnown:
+        result->pairs.push_back({pose.timestamp, T_GB_true, pose.T_GB});
+        break;
+      case TruthIs::kOutside:
+        break;
+      case TruthIs::kInGap:
+        in_gap.push_back(pose.timestamp);
+        break;
+      case TruthIs::kAtJump:
+        ++result->at_truth_jump;
+        break;
     }
   }
+  result->in_truth_gap = static_cast<int>(in_gap.size());
+  return in_gap;
 }
 
 void AssociateLikeEvo(const std::vector<StampedPose>& truth,
@@ -108,19 +146,21 @@ double MedianStep(const std::vector<Stamped>& poses) {
   return SortedQuantile(steps, 0.5);
 }
 
-/// Coverage and gaps. A step between pairs is covered where no pose of the estimate was left
-/// unmatched inside it and it is not longer than the estimate's usual steps.
-void MeasureCoverage(const std::vector<StampedPose>& estimate, const AssociationOptions& options,
-                     Association* result) {
-  const bool interpolated = options.mode == AssociationMode::kInterpolated;
+/// Coverage and gaps. A step between pairs is covered where none of the estimate's poses inside it
+/// lies in a gap of the truth (`in_gap`) and it is not longer than the estimate's usual steps.
+void MeasureCoverage(const std::vector<StampedPose>& estimate, const std::vector<Timestamp>& in_gap,
+                     const AssociationOptions& options, Association* result) {
   // The nearest modes leave poses out by design: there the pairs' own step is the usual one.
-  const double usual_step_s = interpolated ? MedianStep(estimate) : MedianStep(result->pairs);
+  const double usual_step_s = options.mode == AssociationMode::kInterpolated
+                                  ? MedianStep(estimate)
+                                  : MedianStep(result->pairs);
   const double longest_s = options.max_estimate_gap_s > 0.0 ? options.max_estimate_gap_s
                                                             : kGapPerMedianStep * usual_step_s;
   for (std::size_t i = 1; i < result->pairs.size(); ++i) {
     const Timestamp start = result->pairs[i - 1].timestamp;
     const Timestamp end = result->pairs[i].timestamp;
-    if (interpolated && FirstNotBefore(estimate, end) > FirstNotBefore(estimate, start) + 1) {
+    const auto next_in_gap = std::lower_bound(in_gap.begin(), in_gap.end(), start);
+    if (next_in_gap != in_gap.end() && *next_in_gap < end) {
       result->gaps.push_back({start, end, TimeGap::Cause::kTruth});
     } else if (SecondsBetween(start, end) > longest_s) {
       result->gaps.push_back({start, end, TimeGap::Cause::kEstimate});
@@ -167,31 +207,17 @@ void CheckTrajectory(const std::string& name, const std::vector<StampedPose>& po
   }
 }
 
-std::optional<Pose> TruthAt(const std::vector<StampedPose>& truth, Timestamp t,
-                            const AssociationOptions& options) {
-  const Index after = FirstNotBefore(truth, t);
-  if (after == static_cast<Index>(truth.size())) return std::nullopt;
-  if (truth[after].timestamp == t) return truth[after].T_GB;
-  if (after == 0) return std::nullopt;
-  if (JumpsBetween(options.truth_jumps, truth[after - 1].timestamp, truth[after].timestamp)) {
-    return std::nullopt;
-  }
-  // On the integers: 60 ms in nanoseconds times 1e-9 is more than the double 0.06.
-  const Timestamp gap = truth[after].timestamp - truth[after - 1].timestamp;
-  if (gap > ToNanoseconds(options.max_truth_gap_s)) return std::nullopt;
-  return InterpolatePose(truth, t, std::numeric_limits<double>::infinity());
-}
-
 Association Associate(const std::vector<StampedPose>& truth,
                       const std::vector<StampedPose>& estimate, const AssociationOptions& options) {
   Association result;
+  std::vector<Timestamp> in_gap;
   result.estimate_count = static_cast<int>(estimate.size());
   const auto limit = [&](double own) {
     return options.max_nearest_s > 0.0 ? options.max_nearest_s : own;
   };
   switch (options.mode) {
     case AssociationMode::kInterpolated:
-      AssociateInterpolated(truth, estimate, options, &result);
+      in_gap = AssociateInterpolated(truth, estimate, options, &result);
       break;
     case AssociationMode::kEvoNearest:
       AssociateLikeEvo(truth, estimate, limit(kEvoMaxDifferenceS), &result);
@@ -205,11 +231,7 @@ Association Associate(const std::vector<StampedPose>& truth,
                          pose.timestamp > truth.back().timestamp;
     result.outside_truth += outside ? 1 : 0;
   }
-  if (options.mode == AssociationMode::kInterpolated) {
-    result.in_truth_gap =
-        result.estimate_count - result.outside_truth - static_cast<int>(result.pairs.size());
-  }
-  MeasureCoverage(estimate, options, &result);
+  MeasureCoverage(estimate, in_gap, options, &result);
   return result;
 }
 

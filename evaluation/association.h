@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,8 +39,8 @@ struct AssociationOptions {
   /// A longer step between estimated poses is a gap, not covered; 0: 2.5 times the estimate's own
   /// median step.
   double max_estimate_gap_s = 0.0;
-  /// Instants at which the truth is known to jump (ascending): what would be interpolated across
-  /// one is left out and counted.
+  /// Where the truth is known to jump: the stamps of the last poses before (ascending). What would
+  /// be interpolated across a jump is left out and counted.
   std::vector<Timestamp> truth_jumps = {};
 };
 
@@ -56,7 +55,8 @@ struct Association {
   std::vector<PosePair> pairs;  ///< ascending stamps
   int estimate_count = 0;       ///< poses that the estimate has
   int outside_truth = 0;        ///< of them before the first or after the last of the truth
-  int in_truth_gap = 0;         ///< of them where the truth has a gap or a jump
+  int in_truth_gap = 0;         ///< of them where the truth has a gap
+  int at_truth_jump = 0;        ///< of them between the two poses of a jump
   double coverage_s = 0.0;      ///< time between neighbouring pairs, gaps left out
   std::vector<TimeGap> gaps;
 
@@ -73,9 +73,5 @@ void CheckTrajectory(const std::string& name, const std::vector<StampedPose>& po
 [[nodiscard]] Association Associate(const std::vector<StampedPose>& truth,
                                     const std::vector<StampedPose>& estimate,
                                     const AssociationOptions& options);
-
-/// The truth at `t` by the rule of kInterpolated (gaps and jumps included).
-[[nodiscard]] std::optional<Pose> TruthAt(const std::vector<StampedPose>& truth, Timestamp t,
-                                          const AssociationOptions& options);
 
 }  // namespace duet

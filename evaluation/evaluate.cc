@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "common/geometry/pose_jumps.h"
 #include "common/support/input_error.h"
 
 namespace duet {
@@ -57,6 +58,17 @@ TrajectoryEvaluation EvaluateOne(const NamedTrajectory& truth, const NamedTrajec
   return result;
 }
 
+void MarkTruthJumps(const std::vector<StampedPose>& truth, Evaluation* evaluation) {
+  std::vector<Timestamp>& jumps = evaluation->options.association.truth_jumps;
+  if (jumps.empty() && evaluation->options.find_truth_jumps) {
+    for (const PoseJump& jump : FindPoseJumps(truth)) jumps.push_back(jump.before);
+  }
+  for (const Timestamp jump : jumps) {
+    const bool in_span = evaluation->start <= jump && jump < evaluation->end;
+    evaluation->truth_jumps += in_span ? 1 : 0;
+  }
+}
+
 }  // namespace
 
 Evaluation Evaluate(const NamedTrajectory& truth, const std::vector<NamedTrajectory>& estimates,
@@ -71,6 +83,7 @@ Evaluation Evaluate(const NamedTrajectory& truth, const std::vector<NamedTraject
   }
   evaluation.start = options.start.value_or(evaluation.start);
   evaluation.end = std::max(options.end.value_or(evaluation.end), evaluation.start);
+  MarkTruthJumps(truth.poses, &evaluation);
   const TravelledDistance way(truth.poses, options.relative.start_step_s);
   evaluation.truth_way_m = way.At(evaluation.end) - way.At(evaluation.start);
 

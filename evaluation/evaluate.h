@@ -25,6 +25,9 @@ struct EvaluationOptions {
   AlignmentOptions alignment_options;
   AssociationOptions association;
   RelativeErrorOptions relative;
+  /// Where association.truth_jumps is empty: look for jumps in the truth alone (FindPoseJumps). Who
+  /// has the IMU looks with it and gives them.
+  bool find_truth_jumps = true;
   /// The span that is to be covered; poses outside are left out. Where not given, the truth's.
   std::optional<Timestamp> start, end;
 };
@@ -41,11 +44,12 @@ struct TrajectoryEvaluation {
 };
 
 struct Evaluation {
-  EvaluationOptions options;
+  EvaluationOptions options;  ///< with the jumps that were found
   std::string truth_name;
   Timestamp start = 0;  ///< the span
   Timestamp end = 0;
   double truth_way_m = 0.0;  ///< travelled in the span
+  int truth_jumps = 0;       ///< of options.association.truth_jumps, those in the span
   /// Spans' intersection and segments left out; `of_estimator` has moved to the estimates.
   RelativeErrorReport relative;
   std::vector<TrajectoryEvaluation> estimates;

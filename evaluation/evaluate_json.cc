@@ -1,5 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
 
 #include "common/support/input_error.h"
 #include "evaluation/evaluate.h"
@@ -98,6 +100,7 @@ Json TrajectoryJson(const Evaluation& evaluation, const TrajectoryEvaluation& es
   json["matched_poses"] = static_cast<int>(estimate.association.pairs.size());
   json["poses_outside_truth"] = estimate.association.outside_truth;
   json["poses_in_truth_gap"] = estimate.association.in_truth_gap;
+  json["poses_at_truth_jump"] = estimate.association.at_truth_jump;
   json["gaps"] = GapsJson(evaluation, estimate.association.gaps);
   json["alignment"] = AlignmentJson(estimate.absolute.alignment, evaluation.options.alignment);
   json["relative"] = RelativeJson(estimate.relative);
@@ -116,7 +119,7 @@ Json SettingsJson(const Evaluation& evaluation) {
           {"alignment", AlignmentModeName(evaluation.options.alignment)},
           {"association", AssociationModeName(association.mode)},
           {"max_truth_gap_s", association.max_truth_gap_s},
-          {"truth_jumps", static_cast<int>(association.truth_jumps.size())},
+          {"truth_jumps", evaluation.truth_jumps},
           {"relative_start_ns", evaluation.relative.start},
           {"relative_end_ns", evaluation.relative.end},
           {"relative_segments_dropped", evaluation.relative.dropped}};

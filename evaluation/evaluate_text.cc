@@ -181,6 +181,10 @@ std::string EvaluationNotes(const Evaluation& evaluation) {
     notes += "  " + std::to_string(evaluation.relative.dropped) +
              " segments left out for all: one estimate has no pose near an end\n";
   }
+  if (evaluation.truth_jumps > 0) {
+    notes += "  the truth jumps " + std::to_string(evaluation.truth_jumps) +
+             " times in the span; errors hold these steps\n";
+  }
   if (!notes.empty()) notes = "Notes\n" + notes;
   notes +=
       "How to read: an error counts only with its coverage; what was skipped has no error. "

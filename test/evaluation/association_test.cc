@@ -83,10 +83,17 @@ TEST(Association, EstimateGapsCostCoverage) {
 
 TEST(Association, JumpsOfTheTruthAreNotInterpolatedAcross) {
   AssociationOptions options;
-  options.truth_jumps = {kEpoch + 120 * kMs};
+  options.truth_jumps = {kEpoch + 100 * kMs};
   const Association a = Associate(Line({0, 50, 100, 150, 200}), Line({90, 110, 140, 160}), options);
   EXPECT_THAT(Milliseconds(a.pairs, true), testing::ElementsAre(90, 160));
-  EXPECT_EQ(a.in_truth_gap, 2);
+  EXPECT_EQ(a.at_truth_jump, 2);
+  EXPECT_EQ(a.in_truth_gap, 0);
+  // The estimate was there all the time: one pose lost to a jump costs no coverage.
+  const Association covered =
+      Associate(Line({0, 50, 100, 150, 200}), Line({30, 80, 130, 180}), options);
+  EXPECT_EQ(covered.at_truth_jump, 1);
+  EXPECT_NEAR(covered.coverage_s, 0.15, 1e-12);
+  EXPECT_TRUE(covered.gaps.empty());
 }
 
 TEST(Association, SignsOfQuaternionsChangeNothing) {
