@@ -210,7 +210,7 @@ void Frontend::Impl::FollowTracks() {
 void Frontend::Impl::CorrectByAnchors() {
   const StageTimer::Scope scope(timer_, "anchor");
   if (!options_.anchor) return;
-  const cv::Mat& image = pyramids_[0].front();
+  const cv::Mat& image = LevelOf(pyramids_[0], 0);
   keep_.assign(tracks_.size(), true);
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     Track& track = tracks_[i];
@@ -225,7 +225,7 @@ void Frontend::Impl::CorrectByAnchors() {
     Eigen::Vector2d last;
     keep_[i] = patch.age() >= options_.anchor_min_age &&
                first().model.Project(previous_[i].ray, &last) &&
-               patch.Take(patch_shape_, previous_pyramid_.front(), ToPoint(last)) &&
+               patch.Take(patch_shape_, LevelOf(previous_pyramid_, 0), ToPoint(last)) &&
                find() == AnchorPatch::Outcome::kFound;
   }
   Keep(keep_, &statistics_.frame.lost_anchor);
@@ -315,7 +315,7 @@ void Frontend::Impl::DetectNew() {
     if (!ray) continue;
     const std::size_t patch = free_patches_.back();
     free_patches_.pop_back();
-    if (options_.anchor) patches_[patch].Take(patch_shape_, pyramids_[0].front(), corner);
+    if (options_.anchor) patches_[patch].Take(patch_shape_, LevelOf(pyramids_[0], 0), corner);
     tracks_.push_back({next_id_++, corner, *ray, patch, std::nullopt});
     ++statistics_.frame.detected;
   }
@@ -351,7 +351,7 @@ void Frontend::Impl::MatchStereo(std::size_t camera) {
   for (const Track& track : tracks_) {
     queries_.push_back({track.point, track.ray, track.inverse_depth});
   }
-  stereo_[camera - 1].Match(pyramids_[0], pyramids_[camera], queries_, &tracker_, &matches_);
+  stereo_[camera - 1].Match(pyramids_[0], pyramids_[camera], queries_, &matches_);
   int matched = 0;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (!matches_[i]) continue;

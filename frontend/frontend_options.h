@@ -11,7 +11,7 @@ struct FrontendOptions {
   int features_per_cell = 3;
   int fast_threshold_min = 7;
   int fast_threshold_max = 80;
-  double min_corner_quality = 20.0;
+  double min_corner_quality = 30.0;
   double min_distance_px = 18.0;
   int border_px = 8;
   int subpixel_half_window_px = 4;
@@ -19,17 +19,17 @@ struct FrontendOptions {
   double clahe_clip_limit = 3.0;
 
   // Tracking.
-  int klt_half_window_px = 8;
+  int klt_half_window_px = 7;
   int klt_levels = 4;
-  int klt_iterations = 20;
-  double klt_epsilon_px = 0.01;
+  int klt_iterations = 12;
+  double klt_epsilon_px = 0.03;
   double forward_backward_px = 0.5;
   bool gyro_prediction = true;
   bool anchor = true;
   int anchor_half_window_px = 8;
-  double anchor_max_shift_px = 1.0;
+  double anchor_max_shift_px = 1.5;
   double anchor_min_correlation = 0.85;
-  int anchor_min_age = 3;
+  int anchor_min_age = 2;
 
   // Outlier rejection.
   bool outlier_rejection = true;

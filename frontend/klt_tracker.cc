@@ -1,10 +1,16 @@
 #include "frontend/klt_tracker.h"
 
+#include <algorithm>
 #include <opencv2/video/tracking.hpp>
 
 #include "common/support/logging.h"
 
 namespace duet {
+
+const cv::Mat& LevelOf(const ImagePyramid& pyramid, int level) {
+  // OpenCV interleaves images and derivatives.
+  return pyramid.at(std::min(2 * static_cast<std::size_t>(level), pyramid.size() - 2));
+}
 
 void KltTracker::BuildPyramid(const cv::Mat& image, ImagePyramid* pyramid) const {
   const int window = 2 * options_.klt_half_window_px + 1;

@@ -12,6 +12,9 @@ namespace duet {
 /// template.
 using ImagePyramid = std::vector<cv::Mat>;
 
+/// The image of a level, 0 the original; the coarsest one where there are fewer.
+[[nodiscard]] const cv::Mat& LevelOf(const ImagePyramid& pyramid, int level);
+
 enum class FlowStatus : unsigned char { kTracked, kNotFound, kBackwardMismatch };
 
 /// Sparse pyramidal Lucas-Kanade flow with a forward-backward check.

@@ -7,17 +7,51 @@
 namespace duet {
 namespace {
 
-constexpr double kFirstInverseDepth = 0.3;  // 1/m; a room, before anything is known
+constexpr int kCoarseHalf = 4;  // of the searched patch, px of the halved image
+constexpr int kCoarseCount = (2 * kCoarseHalf + 1) * (2 * kCoarseHalf + 1);
+constexpr float kCoarseCorrelation = 0.7F;
+constexpr float kDistinct = 0.04F;  // the best place correlates so much better than the next
+// The way from the guess to the match: a pixel of the halved image and what depth changes in a
+// frame.
+constexpr double kMaxShift = 3.0;  // px
 
-// The inverse depth in C0 whose projection lies nearest to ray_1 in the plane z = 1 of C1, to first
-// order in rho exact: x_1 ~ R ray_0 + rho p, both numerators linear in rho.
+// A patch of kCoarseCount pixels around (x, y), normalized; false where it leaves the image or is
+// flat.
+bool Normalized(const cv::Mat& image, int x, int y, std::array<float, kCoarseCount>* patch) {
+  if (x < kCoarseHalf || y < kCoarseHalf || x >= image.cols - kCoarseHalf ||
+      y >= image.rows - kCoarseHalf) {
+    return false;
+  }
+  int sum = 0;
+  int squares = 0;
+  std::array<int, kCoarseCount> values;
+  std::size_t k = 0;
+  for (int j = -kCoarseHalf; j <= kCoarseHalf; ++j) {
+    const unsigned char* row = image.ptr<unsigned char>(y + j) + x;
+    for (int i = -kCoarseHalf; i <= kCoarseHalf; ++i, ++k) {
+      values[k] = row[i];
+      sum += values[k];
+      squares += values[k] * values[k];
+    }
+  }
+  const float mean = static_cast<float>(sum) / kCoarseCount;
+  const float energy = static_cast<float>(squares) - static_cast<float>(sum) * mean;
+  if (energy < kCoarseCount) return false;  // a deviation of less than a grey level
+  const float scale = 1.0F / std::sqrt(energy);
+  for (k = 0; k < kCoarseCount; ++k) (*patch)[k] = scale * (static_cast<float>(values[k]) - mean);
+  return true;
+}
+
+// The inverse depth in C0 at which the ray's point comes nearest to ray_1 in the sense of
+// (R ray_0 + rho p) x ray_1 = 0, least squares of the first two rows.
 double TriangulateInverseDepth(const Eigen::Vector3d& ray_R, const Eigen::Vector3d& p,
                                const Eigen::Vector3d& ray_1) {
-  // (ray_R + rho p) x ray_1 = 0 in its first two rows.
   const Eigen::Vector3d a = p.cross(ray_1);
   const Eigen::Vector3d b = ray_R.cross(ray_1);
   return -a.head<2>().dot(b.head<2>()) / a.head<2>().squaredNorm();
 }
+
+cv::Point Halved(cv::Point2f point) { return {cvRound(0.5F * point.x), cvRound(0.5F * point.y)}; }
 
 }  // namespace
 
@@ -27,69 +61,105 @@ StereoMatcher::StereoMatcher(const FrontendOptions& options, const CameraCalibra
       other_model_(other.model),
       R_C1C0_((other.R_CB * first.R_CB.conjugate()).toRotationMatrix()),
       p_C1C0_(other.p_CB - R_C1C0_ * first.p_CB),
-      focal_px_(0.5 * (other.model.parameters()[0] + other.model.parameters()[1])),
-      border_px_(options.border_px) {}
+      pixels_per_inverse_depth_(other.model.parameters()[0] * p_C1C0_.norm()),
+      shape_(options.anchor_half_window_px) {}
 
-double StereoMatcher::GuessInverseDepth(std::span<const StereoQuery> queries,
-                                        std::size_t index) const {
-  if (queries[index].inverse_depth) return *queries[index].inverse_depth;
-  // The three nearest that were matched before; the middle one of their depths.
-  struct Neighbour {
-    float distance_squared;
-    double inverse_depth;
-  };
-  std::array<Neighbour, 3> nearest;
-  nearest.fill({1e30F, kFirstInverseDepth});
-  for (const StereoQuery& query : queries) {
-    if (!query.inverse_depth) continue;
-    const cv::Point2f apart = query.point - queries[index].point;
-    Neighbour candidate{apart.dot(apart), *query.inverse_depth};
-    for (Neighbour& held : nearest) {
-      if (candidate.distance_squared < held.distance_squared) std::swap(candidate, held);
-    }
+std::optional<cv::Point2f> StereoMatcher::Place(const StereoQuery& query,
+                                                double inverse_depth) const {
+  Eigen::Vector2d uv;
+  if (!other_model_.Project(R_C1C0_ * query.ray + inverse_depth * p_C1C0_, &uv)) {
+    return std::nullopt;
   }
-  std::array<double, 3> depths;
-  for (std::size_t i = 0; i < 3; ++i) depths[i] = nearest[i].inverse_depth;
-  std::sort(depths.begin(), depths.end());
-  return depths[1];
+  if (!other_model_.Contains(uv)) return std::nullopt;
+  return cv::Point2f(static_cast<float>(uv.x()), static_cast<float>(uv.y()));
+}
+
+std::optional<cv::Point2f> StereoMatcher::Search(const cv::Mat& first, const cv::Mat& other,
+                                                 const StereoQuery& query) {
+  std::array<float, kCoarseCount> wanted;
+  std::array<float, kCoarseCount> candidate;
+  const cv::Point from = Halved(query.point);
+  if (!Normalized(first, from.x, from.y, &wanted)) return std::nullopt;
+  scores_.clear();
+  places_.clear();
+  cv::Point last(-1, -1);
+  const double step = 2.0 / pixels_per_inverse_depth_;  // a pixel of the halved image
+  for (double rho = 0.0; rho <= 1.0 / options_.stereo_min_depth_m; rho += step) {
+    const std::optional<cv::Point2f> place = Place(query, rho);
+    if (!place) continue;
+    const cv::Point at = Halved(*place);
+    if (at == last || !Normalized(other, at.x, at.y, &candidate)) continue;
+    last = at;
+    float score = 0.0F;
+    for (std::size_t k = 0; k < kCoarseCount; ++k) score += wanted[k] * candidate[k];
+    scores_.push_back(score);
+    places_.push_back(*place);
+  }
+  if (scores_.empty()) return std::nullopt;
+  const auto best = std::max_element(scores_.begin(), scores_.end());
+  const cv::Point2f best_place = places_[static_cast<std::size_t>(best - scores_.begin())];
+  if (*best < kCoarseCorrelation) return std::nullopt;
+  for (std::size_t i = 0; i < scores_.size(); ++i) {
+    const cv::Point2f apart = places_[i] - best_place;
+    // Its own peak is as wide as the patch's structure, a few pixels of the halved image.
+    if (apart.dot(apart) > 8.0F * 8.0F && scores_[i] > *best - kDistinct) return std::nullopt;
+  }
+  return best_place;
+}
+
+std::optional<StereoMatch> StereoMatcher::Track(const cv::Mat& first, const cv::Mat& other,
+                                                const StereoQuery& query, cv::Point2f start) {
+  cv::Point2f found = start;
+  if (patch_.Find(shape_, other, kMaxShift, options_.anchor_min_correlation, &found) !=
+      AnchorPatch::Outcome::kFound) {
+    return std::nullopt;
+  }
+  const std::optional<StereoMatch> match = Verify(query, found);
+  if (!match || !patch_back_.Take(shape_, other, found)) return std::nullopt;
+  // The way back starts as far from its goal as the way there did.
+  cv::Point2f back = query.point + 0.5F * (found - start);
+  if (patch_back_.Find(shape_, first, kMaxShift, options_.anchor_min_correlation, &back) !=
+      AnchorPatch::Outcome::kFound) {
+    return std::nullopt;
+  }
+  if (cv::norm(back - query.point) > options_.stereo_forward_backward_px) return std::nullopt;
+  return match;
 }
 
 std::optional<StereoMatch> StereoMatcher::Verify(const StereoQuery& query,
                                                  cv::Point2f found) const {
   const Eigen::Vector2d uv(found.x, found.y);
-  if (!other_model_.Contains(uv, -border_px_)) return std::nullopt;
+  if (!other_model_.Contains(uv, -options_.border_px)) return std::nullopt;
   const std::optional<Eigen::Vector3d> ray_1 = other_model_.Unproject(uv);
   if (!ray_1) return std::nullopt;
   const Eigen::Vector3d ray_R = R_C1C0_ * query.ray;
   const double inverse_depth = TriangulateInverseDepth(ray_R, p_C1C0_, *ray_1);
-  // Far points scatter around zero; beyond that a point behind the camera is a wrong match.
-  const double noise = 2.0 * options_.stereo_epipolar_px / (focal_px_ * p_C1C0_.norm());
+  // Far points scatter around zero; what lies further behind the camera is a wrong match.
+  const double noise = 2.0 * options_.stereo_epipolar_px / pixels_per_inverse_depth_;
   if (inverse_depth > 1.0 / options_.stereo_min_depth_m || inverse_depth < -noise) {
     return std::nullopt;
   }
   Eigen::Vector2d expected;
-  const Eigen::Vector3d on_curve = ray_R + inverse_depth * p_C1C0_;
-  if (!other_model_.Project(on_curve, &expected)) return std::nullopt;
+  if (!other_model_.Project(ray_R + inverse_depth * p_C1C0_, &expected)) return std::nullopt;
   if ((expected - uv).norm() > options_.stereo_epipolar_px) return std::nullopt;
   return StereoMatch{found, inverse_depth};
 }
 
 void StereoMatcher::Match(const ImagePyramid& first, const ImagePyramid& other,
-                          std::span<const StereoQuery> queries, KltTracker* tracker,
+                          std::span<const StereoQuery> queries,
                           std::vector<std::optional<StereoMatch>>* matches) {
   matches->assign(queries.size(), std::nullopt);
-  points_.clear();
-  found_.clear();
   for (std::size_t i = 0; i < queries.size(); ++i) {
-    points_.push_back(queries[i].point);
-    const double inverse_depth = std::max(0.0, GuessInverseDepth(queries, i));
-    Eigen::Vector2d guess(queries[i].point.x, queries[i].point.y);
-    (void)other_model_.Project(R_C1C0_ * queries[i].ray + inverse_depth * p_C1C0_, &guess);
-    found_.emplace_back(static_cast<float>(guess.x()), static_cast<float>(guess.y()));
-  }
-  tracker->Track(first, other, points_, options_.stereo_forward_backward_px, &found_, &status_);
-  for (std::size_t i = 0; i < queries.size(); ++i) {
-    if (status_[i] == FlowStatus::kTracked) (*matches)[i] = Verify(queries[i], found_[i]);
+    const StereoQuery& query = queries[i];
+    if (!patch_.Take(shape_, LevelOf(first, 0), query.point)) continue;
+    std::optional<StereoMatch>& match = (*matches)[i];
+    if (query.inverse_depth) {
+      const std::optional<cv::Point2f> start = Place(query, std::max(0.0, *query.inverse_depth));
+      if (start) match = Track(LevelOf(first, 0), LevelOf(other, 0), query, *start);
+    }
+    if (match) continue;
+    const std::optional<cv::Point2f> start = Search(LevelOf(first, 1), LevelOf(other, 1), query);
+    if (start) match = Track(LevelOf(first, 0), LevelOf(other, 0), query, *start);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/measurement/calibration.h"
+#include "frontend/anchor_patch.h"
 #include "frontend/frontend_options.h"
 #include "frontend/klt_tracker.h"
 
@@ -23,10 +24,15 @@ struct StereoMatch {
   double inverse_depth = 0.0;  ///< 1/z in the first camera, 1/m; near 0 (or below) is far away
 };
 
-/// Left-to-right tracking between cameras whose relation is told. The search starts on the epipolar
-/// curve at the depth of the point's last match, else at that of the nearest neighbours that have
-/// one; what is found must lie within stereo_epipolar_px of the curve, in front of both cameras and
-/// not nearer than stereo_min_depth_m, and lead back.
+/// Left-to-right tracking between cameras whose relation is told and whose images are turned little
+/// against one another.
+///
+/// A point that was matched before is looked for where that depth says. A new one is searched along
+/// its epipolar curve, by the correlation of a small patch in a halved image, and must have one
+/// best place there: repeated texture is no match. Either is then tracked as an affine patch,
+/// normalized in brightness and contrast (AnchorPatch; the two cameras expose differently), and
+/// back. What is found must lie within stereo_epipolar_px of the curve, in front of both cameras
+/// and not nearer than stereo_min_depth_m.
 class StereoMatcher {
  public:
   StereoMatcher(const FrontendOptions& options, const CameraCalibration& first,
@@ -34,24 +40,31 @@ class StereoMatcher {
 
   /// One result a query, in their order; nothing where there is no match.
   void Match(const ImagePyramid& first, const ImagePyramid& other,
-             std::span<const StereoQuery> queries, KltTracker* tracker,
+             std::span<const StereoQuery> queries,
              std::vector<std::optional<StereoMatch>>* matches);
 
  private:
-  [[nodiscard]] double GuessInverseDepth(std::span<const StereoQuery> queries,
-                                         std::size_t index) const;
+  /// Raw pixel in the other camera of the query's point at that inverse depth.
+  [[nodiscard]] std::optional<cv::Point2f> Place(const StereoQuery& query,
+                                                 double inverse_depth) const;
+  [[nodiscard]] std::optional<cv::Point2f> Search(const cv::Mat& first, const cv::Mat& other,
+                                                  const StereoQuery& query);
+  [[nodiscard]] std::optional<StereoMatch> Track(const cv::Mat& first, const cv::Mat& other,
+                                                 const StereoQuery& query, cv::Point2f start);
   [[nodiscard]] std::optional<StereoMatch> Verify(const StereoQuery& query,
                                                   cv::Point2f found) const;
 
   FrontendOptions options_;
   CameraModel other_model_;
   Eigen::Matrix3d R_C1C0_;
-  Eigen::Vector3d p_C1C0_;  // C0's origin in C1, m
-  double focal_px_;
-  double border_px_;
-  std::vector<cv::Point2f> points_;  // scratch
-  std::vector<cv::Point2f> found_;
-  std::vector<FlowStatus> status_;
+  Eigen::Vector3d p_C1C0_;           // C0's origin in C1, m
+  double pixels_per_inverse_depth_;  // disparity of 1/m, about
+  PatchShape shape_;
+  // Scratch.
+  AnchorPatch patch_;
+  AnchorPatch patch_back_;
+  std::vector<float> scores_;
+  std::vector<cv::Point2f> places_;
 };
 
 }  // namespace duet
