@@ -307,7 +307,11 @@ std::vector<Timestamp> Recording::FrameStamps() const {
 }
 
 Recording LoadRecording(const fs::path& folder, const RecordingOptions& options) {
-  return Loader(folder, options).Load();
+  try {
+    return Loader(folder, options).Load();
+  } catch (const fs::filesystem_error& error) {  // a folder that may not be searched
+    throw InputError(error.path1().string(), 0, "", error.code().message());
+  }
 }
 
 void WriteTrackFolder(const fs::path& folder, const std::vector<TrackFrameSet>& stream, int camera,
