@@ -22,8 +22,14 @@ std::string Joined(const std::vector<std::string>& words, const std::string& sep
   return text;
 }
 
+/// gflags' names are identifiers; on the command line a dash does as well.
+std::string GflagsName(std::string name) {
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
 gflags::CommandLineFlagInfo InfoOf(const FlagUse& flag) {
-  return gflags::GetCommandLineFlagInfoOrDie(flag.name.c_str());
+  return gflags::GetCommandLineFlagInfoOrDie(GflagsName(flag.name).c_str());
 }
 
 /// Breaks at spaces; every line after the first is indented.
@@ -119,8 +125,8 @@ class CommandLineParser {
   const FlagUse& Find(const std::string& name, bool* negated) const {
     std::vector<std::string> names;
     for (const FlagUse& flag : command_.flags) {
-      if (flag.name == name) return flag;
-      if (name == "no" + flag.name && InfoOf(flag).type == "bool") {
+      if (GflagsName(flag.name) == GflagsName(name)) return flag;
+      if (GflagsName(name) == "no" + GflagsName(flag.name) && InfoOf(flag).type == "bool") {
         *negated = true;
         return flag;
       }
@@ -141,7 +147,7 @@ class CommandLineParser {
     if (!flag.repeatable && line_.Given(flag.name)) {
       throw InputError("--" + flag.name + " is given more than once");
     }
-    if (gflags::SetCommandLineOption(flag.name.c_str(), value.c_str()).empty()) {
+    if (gflags::SetCommandLineOption(GflagsName(flag.name).c_str(), value.c_str()).empty()) {
       throw InputError("--" + flag.name + ": '" + value + "' is not " + KindOf(InfoOf(flag).type));
     }
     line_.values_[flag.name].push_back(value);

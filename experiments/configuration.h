@@ -6,7 +6,7 @@
 #include "backends/factory.h"
 #include "backends/initialization/initialization.h"
 #include "common/config/config_sources.h"
-#include "evaluation/evaluation_options.h"
+#include "experiments/evaluation_settings.h"
 #include "frontend/frontend_options.h"
 
 namespace duet {
@@ -17,7 +17,7 @@ struct Configuration {
   FrontendOptions frontend;
   InitializationOptions initialization;
   BackendOptions backends;
-  EvaluationOptions evaluation;
+  EvaluationSettings evaluation;
 
   /// Fills all groups and refuses keys that none of them has.
   void Read(ConfigSources* sources);

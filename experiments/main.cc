@@ -18,7 +18,8 @@ int Fail(ExitStatus status, const char* what) {
 int Run(int argc, char** argv) {
   try {
     return Dispatch(
-        {CompareCommand(), TrackCommand(), RunCommand(), EvaluateCommand(), ConfigCommand()}, argc,
+        {CompareCommand(), TrackCommand(), RunCommand(), EvaluateCommand(), SimulateCommand(),
+                     ConfigCommand()}, argc,
         argv);
   } catch (const InputError& error) {
     return Fail(kBadInput, error.what());

@@ -75,6 +75,7 @@ void RunRecorder::Add(const TrackFrameSet& frames, const EstimatorOutput& output
   row_ += output.standstill ? ",1," : ",0,";
   AppendNumber(output.iterations, &row_);
   features_.Write(row_ + "\n");
+  summary_.last_status = output.status;
   switch (output.status) {
     case EstimatorStatus::kInitializing:
       ++summary_.waiting;

@@ -15,7 +15,8 @@ struct RunSummary {
   int waiting = 0;  ///< before the start
   int tracking = 0;
   int dead_reckoning = 0;
-  int skipped = 0;                         ///< their interval was not covered by the IMU
+  int skipped = 0;  ///< their interval was not covered by the IMU
+  EstimatorStatus last_status = EstimatorStatus::kInitializing;
   std::optional<Timestamp> first_instant;  ///< of the states written
   std::optional<Timestamp> last_instant;
   std::string failure;  ///< empty: it did not fail

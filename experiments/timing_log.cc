@@ -55,10 +55,10 @@ void TimingLog::Write(const std::filesystem::path& path) const {
   WriteTextFile(path, text);
 }
 
-std::vector<double> ReadTimingColumn(const std::filesystem::path& path, const std::string& column) {
+std::vector<std::pair<std::string, std::vector<double>>> ReadTiming(
+    const std::filesystem::path& path) {
   const std::string text = ReadTextFile(path);
-  std::vector<double> values;
-  std::size_t index = 0;
+  std::vector<std::pair<std::string, std::vector<double>>> columns;
   int line_number = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
@@ -66,18 +66,25 @@ std::vector<double> ReadTimingColumn(const std::filesystem::path& path, const st
         Split(std::string_view(text).substr(begin, end - begin));
     begin = end + 1;
     if (++line_number == 1) {
-      const auto found = std::find(fields.begin(), fields.end(), column + std::string(kUnit));
-      if (found == fields.end()) return values;
-      index = static_cast<std::size_t>(found - fields.begin());
+      for (std::size_t i = 1; i < fields.size(); ++i) {
+        columns.emplace_back(fields[i].substr(0, fields[i].rfind(kUnit)), std::vector<double>());
+      }
       continue;
     }
-    if (index < fields.size() && fields[index].empty()) continue;
-    const std::optional<double> value =
-        index < fields.size() ? ParseDouble(fields[index]) : std::nullopt;
-    if (!value) throw InputError(path.string(), line_number, column, "expected a number");
-    values.push_back(*value);
+    if (fields.size() != columns.size() + 1) {
+      throw InputError(path.string(), line_number, "",
+                       "expected " + std::to_string(columns.size() + 1) + " fields");
+    }
+    for (std::size_t i = 1; i < fields.size(); ++i) {
+      if (fields[i].empty()) continue;
+      const std::optional<double> value = ParseDouble(fields[i]);
+      if (!value) {
+        throw InputError(path.string(), line_number, columns[i - 1].first, "expected a number");
+      }
+      columns[i - 1].second.push_back(*value);
+    }
   }
-  return values;
+  return columns;
 }
 
 }  // namespace duet

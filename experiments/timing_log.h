@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/support/stage_timer.h"
@@ -30,9 +31,8 @@ class TimingLog {
   std::vector<Row> rows_;
 };
 
-/// One column of a timing.csv, of the frames that have it; empty where there is no such column.
-/// Throws InputError.
-[[nodiscard]] std::vector<double> ReadTimingColumn(const std::filesystem::path& path,
-                                                   const std::string& column);
+/// A timing.csv by columns: name and the values [ms] of the frames that have it. Throws InputError.
+[[nodiscard]] std::vector<std::pair<std::string, std::vector<double>>> ReadTiming(
+    const std::filesystem::path& path);
 
 }  // namespace duet

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/dataset/ground_truth.h"
+#include "evaluation/comparison.h"
+#include "evaluation/consistency.h"
+#include "experiments/child_process.h"
+#include "experiments/manifest.h"
+
+namespace duet {
+
+/// What `duet run` has left in a folder, for a table; tables are made from records only. A folder
+/// that is absent, because the program ended before it could write, gives a failed run with
+/// `child`'s end as its reason. `span_start`: instants of failures count from here.
+struct RunRecord {
+  EstimatorRun run;
+  std::vector<StampedPose> trajectory;
+  std::string tracks_sha256;
+};
+[[nodiscard]] RunRecord ReadRunRecord(const std::filesystem::path& folder, const ChildResult& child,
+                                      Timestamp span_start);
+
+/// What `duet track` has left.
+[[nodiscard]] FrontendRun ReadTrackRecord(const std::filesystem::path& folder);
+
+/// NEES at each state of a record that has covariance.csv, against a truth with velocities.
+[[nodiscard]] NeesRun ComputeRecordNees(const std::filesystem::path& folder,
+                                        const GroundTruth& truth);
+
+}  // namespace duet

@@ -1,0 +1,57 @@
+#include "experiments/session.h"
+
+#include <utility>
+
+#include "common/support/input_error.h"
+#include "common/support/logging.h"
+#include "experiments/common_flags.h"
+
+namespace duet {
+
+EstimatorSetup Session::Setup() const {
+  return {.rig = recording.rig,
+          .imu_noise = recording.imu_sensor.noise,
+          .g_G = recording.g_G(),
+          .shared = configuration.shared};
+}
+
+EstimatorStart Session::Start() const {
+  const StartMode mode = FLAGS_init == "groundtruth" ? StartMode::kGroundTruth : StartMode::kRest;
+  if (mode == StartMode::kGroundTruth && !recording.truth) {
+    throw InputError("--init groundtruth: " + recording.folder.string() +
+                     " has no ground truth (state_groundtruth_estimate0/data.csv)");
+  }
+  return {mode, Setup(), configuration.initialization,
+          mode == StartMode::kGroundTruth ? recording.truth->poses : std::vector<StampedPose>(),
+          recording.imu};
+}
+
+Session OpenSession(const CommandLine& line, const std::string& dataset,
+                    const std::string& tracks_folder) {
+  Session session;
+  session.configuration = LoadConfiguration(line, &session.sources);
+  RecordingOptions options;
+  options.cameras = CamerasAsked();
+  options.start_s = FLAGS_start;
+  options.duration_s = FLAGS_duration;
+  if (!tracks_folder.empty()) {
+    options.source = RecordingOptions::Source::kTracks;
+    options.tracks_folder = tracks_folder;
+  }
+  session.recording = LoadRecording(dataset, options);
+  for (const std::string& warning : session.recording.warnings) LOG(WARNING) << warning;
+  return session;
+}
+
+std::unique_ptr<LiveTracker> StartTracking(const Session& session, LiveTracker::Observer observer) {
+  std::vector<ImageFiles> files;
+  for (const ImageStamp& stamp : session.recording.images) {
+    files.push_back({stamp.timestamp, stamp.paths});
+  }
+  return std::make_unique<LiveTracker>(std::move(files), session.recording.rig,
+                                       session.configuration.frontend,
+                                       session.configuration.shared.max_tracks, FLAGS_seed,
+                                       session.recording.imu, std::move(observer));
+}
+
+}  // namespace duet

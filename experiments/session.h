@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "common/dataset/recording.h"
+#include "experiments/command_line.h"
+#include "experiments/configuration.h"
+#include "experiments/estimator_start.h"
+#include "experiments/live_tracker.h"
+
+namespace duet {
+
+/// What the common flags ask for: the settings in force and the recording, read and checked.
+struct Session {
+  ConfigSources sources;
+  Configuration configuration;
+  Recording recording;
+
+  /// What estimators are told.
+  [[nodiscard]] EstimatorSetup Setup() const;
+  /// By --init. Throws InputError for a start from a truth that the recording does not have.
+  [[nodiscard]] EstimatorStart Start() const;
+};
+
+/// Reads configuration and recording. Tracks are taken from `tracks_folder` where it is not empty,
+/// else what the recording has: images before tracks. Throws InputError.
+[[nodiscard]] Session OpenSession(const CommandLine& line, const std::string& dataset,
+                                  const std::string& tracks_folder);
+
+/// The front end on the session's images (which it must have).
+[[nodiscard]] std::unique_ptr<LiveTracker> StartTracking(const Session& session,
+                                                         LiveTracker::Observer observer);
+
+}  // namespace duet

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace duet {
+
+/// What a run of the program left behind.
+struct ProgramResult {
+  int status = -1;  ///< exit status; 128 + N where signal N ended it
+  std::string out;
+  std::string err;
+};
+
+/// Runs the built `duet` with these arguments and waits for it. Where `interrupt_after_s` is
+/// positive, sends it SIGINT once, that long after its start.
+[[nodiscard]] ProgramResult RunDuet(const std::vector<std::string>& arguments,
+                                    double interrupt_after_s = 0.0);
+
+/// A folder that goes with the object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] std::string operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+[[nodiscard]] std::string ReadFile(const std::filesystem::path& path);
+void WriteFile(const std::filesystem::path& path, const std::string& text);
+/// Names in a folder, sorted.
+[[nodiscard]] std::vector<std::string> FilesIn(const std::filesystem::path& folder);
+
+/// Root of the real recordings: $DUET_DATA or, beside the repository, ../shared/data; empty where
+/// this machine has none.
+[[nodiscard]] std::filesystem::path RealData();
+
+}  // namespace duet
