@@ -12,5 +12,6 @@ namespace duet {
 [[nodiscard]] Command ConfigCommand();
 [[nodiscard]] Command SimulateCommand();
 [[nodiscard]] Command CheckCommand();
+[[nodiscard]] Command MonteCarloCommand();
 
 }  // namespace duet

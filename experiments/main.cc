@@ -17,10 +17,9 @@ int Fail(ExitStatus status, const char* what) {
 
 int Run(int argc, char** argv) {
   try {
-    return Dispatch(
-        {CompareCommand(), TrackCommand(), RunCommand(), EvaluateCommand(), SimulateCommand(),
-                     ConfigCommand()}, argc,
-        argv);
+    return Dispatch({CompareCommand(), TrackCommand(), RunCommand(), EvaluateCommand(),
+                     SimulateCommand(), ConfigCommand()},
+                    argc, argv);
   } catch (const InputError& error) {
     return Fail(kBadInput, error.what());
   } catch (const OutputError& error) {

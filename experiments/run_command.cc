@@ -41,9 +41,13 @@ ExitStatus StatusOf(LoopOutcome outcome) {
 
 Manifest DescribeOutcome(LoopOutcome outcome, const RunSummary& summary,
                          const std::string& start_reason) {
-  Manifest manifest = {{"status", OutcomeName(outcome)}, {"reason", ""},
-                       {"frames", summary.frames},       {"waiting", summary.waiting},
-                       {"tracking", summary.tracking},   {"dead_reckoned", summary.dead_reckoning},
+  Manifest manifest = {{"status", OutcomeName(outcome)},
+                       {"reason", ""},
+                       {"last_status", EstimatorStatusName(summary.last_status)},
+                       {"frames", summary.frames},
+                       {"waiting", summary.waiting},
+                       {"tracking", summary.tracking},
+                       {"dead_reckoned", summary.dead_reckoning},
                        {"skipped", summary.skipped}};
   if (outcome == LoopOutcome::kFailed) {
     manifest["reason"] =
