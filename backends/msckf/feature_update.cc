@@ -24,11 +24,21 @@ void KeepUnless(std::vector<T>* elements, const Refuse& refuse) {
   elements->resize(kept);
 }
 
+/// True where the pixels fix the depth: the inverse depth is `min_sigmas` of its standard deviation
+/// (from the pixels' noise alone, H_f whitened) above zero.
+bool HasDepth(const InverseDepth& landmark, const Eigen::Ref<const LandmarkRows>& H_f,
+              double min_sigmas) {
+  const Eigen::Matrix3d covariance = (H_f.transpose() * H_f).inverse();
+  const double rho = landmark.z();
+  return rho > 0.0 && rho * rho > min_sigmas * min_sigmas * covariance(2, 2);
+}
+
 }  // namespace
 
 FeatureUpdate::FeatureUpdate(const EstimatorSetup& setup, const MsckfOptions& options)
     : options_(options),
-      settings_{options.first_estimates, setup.shared.pixel_noise_px, setup.g_G},
+      settings_{options.first_estimates && !options.rebase_first_estimates,
+                setup.shared.pixel_noise_px, setup.g_G},
       gate_(options.gate_probability, MaxDegreesOfFreedom(setup, options)) {
   const int max_observations = options.max_clones * static_cast<int>(setup.rig.cameras.size());
   in_states_.reserve(max_observations);
@@ -62,7 +72,7 @@ void FeatureUpdate::SelectFinishedTracks(const FilterState& state, bool window_f
 
 void FeatureUpdate::GatherObservations(const FilterState& state, const FeatureTrack& track,
                                        Candidate* candidate) {
-  const bool time_matters = TimeMatters(state);
+  const bool time_matters = state.time_matters();
   candidate->first_observation = static_cast<int>(observations_.size());
   candidate->observation_count = static_cast<int>(track.observations.size());
   in_states_.clear();
@@ -114,13 +124,14 @@ void FeatureUpdate::Linearize(const FilterState& state, FeatureTracks* tracks,
     const bool ok = LinearizeLandmark(state, columns_, settings_, candidate.anchor_clone,
                                       candidate.landmark, ObservationsOf(candidate),
                                       H_f_.middleRows(row, count), rows_.middleRows(row, count));
-    if (ok) {
-      row += count;
-    } else {
+    if (!ok) tracks->Consume(candidate.track);
+    if (!ok ||
+        !HasDepth(candidate.landmark, H_f_.middleRows(row, count), options_.min_depth_sigmas)) {
       ++counts->not_triangulated;
-      tracks->Consume(candidate.track);
+      return true;
     }
-    return !ok;
+    row += count;
+    return false;
   });
 }
 
@@ -167,7 +178,9 @@ Eigen::Ref<const Eigen::MatrixXd> FeatureUpdate::Compress() {
     stack_.middleRows(row, count) = rows_.middleRows(candidate.first_row + 3, count);
     row += count;
   }
-  return stack_.topRows(duet::Compress(stack_));
+  const int remaining = duet::Compress(stack_);
+  shape_ = remaining < row_count ? MeasurementShape::kUpperTriangular : MeasurementShape::kFull;
+  return stack_.topRows(remaining);
 }
 
 }  // namespace duet

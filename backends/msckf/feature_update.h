@@ -8,6 +8,7 @@
 #include "backends/msckf/feature_tracks.h"
 #include "backends/msckf/filter_state.h"
 #include "backends/msckf/gate.h"
+#include "backends/msckf/kalman_update.h"
 #include "backends/msckf/linearization.h"
 #include "backends/msckf/msckf_options.h"
 #include "common/measurement/triangulation.h"
@@ -32,7 +33,9 @@ class FeatureUpdate {
   /// little parallax) keeps what the window keeps of them.
   void Triangulate(const FilterState& state, FeatureTracks* tracks, FeatureCounts* counts);
 
-  /// 6.5.1: Jacobians and residuals of all landmarks, one block of rows each.
+  /// 6.5.1: Jacobians and residuals of all landmarks, one block of rows each. Leaves out, as
+  /// Triangulate does, those without depth: where nothing moves, a depth is made of the pixels'
+  /// noise, and what follows from it is wrong and overconfident.
   void Linearize(const FilterState& state, FeatureTracks* tracks, FeatureCounts* counts);
 
   /// 6.5.2: three rows a landmark go.
@@ -45,6 +48,8 @@ class FeatureUpdate {
   /// none. Valid until the next call.
   [[nodiscard]] Eigen::Ref<const Eigen::MatrixXd> Compress();
 
+  /// Of what Compress returned.
+  [[nodiscard]] MeasurementShape shape() const { return shape_; }
   /// What the columns of the stack act on.
   [[nodiscard]] const VisualColumns& columns() const { return columns_; }
 
@@ -76,6 +81,7 @@ class FeatureUpdate {
   MeasurementRows rows_;
   Eigen::MatrixXd P_measured_;  // covariance of the measured components
   Eigen::MatrixXd stack_;
+  MeasurementShape shape_ = MeasurementShape::kFull;
 };
 
 }  // namespace duet

@@ -7,9 +7,22 @@
 
 namespace duet {
 
+namespace {
+
+bool MayTimesDiffer(const RigCalibration& rig, const CalibrationLayout& layout) {
+  return rig.t_r_s != 0.0 || layout.OffsetOf(CalibrationBlock::kTimeOffset) >= 0 ||
+         layout.OffsetOf(CalibrationBlock::kReadoutTime) >= 0;
+}
+
+}  // namespace
+
 FilterState::FilterState(const RigCalibration& rig, const CalibrationPriors& priors, int max_clones)
-    : layout_(priors, rig), max_clones_(max_clones), rig_(rig) {
-  const int capacity = kNavSize + layout_.size() + kCloneSize * max_clones;
+    : layout_(priors, rig),
+      time_matters_(MayTimesDiffer(rig, layout_)),
+      clone_size_(time_matters_ ? 9 : 6),
+      max_clones_(max_clones),
+      rig_(rig) {
+  const int capacity = CloneOffset(max_clones);
   P_ = Eigen::MatrixXd::Zero(capacity, capacity);
   clones_.reserve(max_clones);
 }
@@ -40,7 +53,7 @@ void FilterState::SetPropagated(const NavState& nav, Timestamp instant) {
 
 void FilterState::Augment(double t_d_at_instant_s) {
   CHECK_LT(static_cast<int>(clones_.size()), max_clones_);
-  DuplicateComponents(P_, size(), 0, kCloneSize);
+  DuplicateComponents(P_, size(), 0, clone_size_);
   Clone clone;
   clone.id = next_clone_id_++;
   clone.instant = inertial_.instant;
@@ -51,7 +64,7 @@ void FilterState::Augment(double t_d_at_instant_s) {
 }
 
 void FilterState::RemoveClone(int clone) {
-  RemoveComponents(P(), CloneOffset(clone), kCloneSize);
+  RemoveComponents(P(), CloneOffset(clone), clone_size_);
   clones_.erase(clones_.begin() + clone);
 }
 
@@ -68,24 +81,27 @@ void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& dx, double ma
     }
   }
   for (int i = 0; i < static_cast<int>(clones_.size()); ++i) {
-    clones_[i].nav = BoxPlus(clones_[i].nav, Vector9d(dx.segment<kCloneSize>(CloneOffset(i))));
+    Vector9d error = Vector9d::Zero();
+    error.head(clone_size_) = dx.segment(CloneOffset(i), clone_size_);
+    clones_[i].nav = BoxPlus(clones_[i].nav, error);
   }
 }
 
 void FilterState::Rebase() {
   Eigen::Ref<Eigen::MatrixXd> P_all = P();
-  const auto rebase = [&](int offset, const NavState& nav, NavState* fej) {
-    const Eigen::Matrix3d M_p = -Hat(nav.p_GB - fej->p_GB);
-    const Eigen::Matrix3d M_v = -Hat(nav.v_GB - fej->v_GB);
-    P_all.middleRows<3>(offset + 3) += M_p * P_all.middleRows<3>(offset);
-    P_all.middleRows<3>(offset + 6) += M_v * P_all.middleRows<3>(offset);
-    P_all.middleCols<3>(offset + 3) += P_all.middleCols<3>(offset) * M_p.transpose();
-    P_all.middleCols<3>(offset + 6) += P_all.middleCols<3>(offset) * M_v.transpose();
+  const auto add_rotation = [&](int component, int theta, const Eigen::Vector3d& moved) {
+    const Eigen::Matrix3d M = -Hat(moved);
+    P_all.middleRows<3>(component) += M * P_all.middleRows<3>(theta);
+    P_all.middleCols<3>(component) += P_all.middleCols<3>(theta) * M.transpose();
+  };
+  const auto rebase = [&](int offset, bool with_velocity, const NavState& nav, NavState* fej) {
+    add_rotation(offset + 3, offset, nav.p_GB - fej->p_GB);
+    if (with_velocity) add_rotation(offset + 6, offset, nav.v_GB - fej->v_GB);
     *fej = nav;
   };
-  rebase(0, inertial_.nav, &nav_fej_);
+  rebase(0, true, inertial_.nav, &nav_fej_);
   for (int i = 0; i < static_cast<int>(clones_.size()); ++i) {
-    rebase(CloneOffset(i), clones_[i].nav, &clones_[i].nav_fej);
+    rebase(CloneOffset(i), time_matters_, clones_[i].nav, &clones_[i].nav_fej);
   }
 }
 

@@ -7,8 +7,8 @@
 namespace duet {
 
 bool KalmanUpdate(const Eigen::Ref<const Eigen::MatrixXd>& H_r, std::span<const int> columns,
-                  Eigen::Ref<Eigen::MatrixXd> P, Eigen::Ref<Eigen::VectorXd> dx,
-                  KalmanWorkspace* workspace) {
+                  MeasurementShape shape, Eigen::Ref<Eigen::MatrixXd> P,
+                  Eigen::Ref<Eigen::VectorXd> dx, KalmanWorkspace* workspace) {
   const auto width = static_cast<Eigen::Index>(columns.size());
   CHECK_EQ(H_r.cols(), width + 1);
   const auto n = P.rows();
@@ -19,11 +19,17 @@ bool KalmanUpdate(const Eigen::Ref<const Eigen::MatrixXd>& H_r, std::span<const 
   w.P_columns.resize(n, width);
   for (Eigen::Index j = 0; j < width; ++j) w.P_columns.col(j) = P.col(columns[j]);
   w.P_H.resize(n, rows);
-  w.P_H.noalias() = w.P_columns * H.transpose();
+  const bool triangular = shape == MeasurementShape::kUpperTriangular;
+  if (triangular) {
+    w.P_H.noalias() = w.P_columns * H.triangularView<Eigen::Upper>().transpose();
+  } else {
+    w.P_H.noalias() = w.P_columns * H.transpose();
+  }
   w.measured.resize(width, rows);
   for (Eigen::Index j = 0; j < width; ++j) w.measured.row(j) = w.P_H.row(columns[j]);
   w.S.resize(rows, rows);
-  w.S.noalias() = H * w.measured;
+  // Only the lower triangle of S is needed.
+  w.S.triangularView<Eigen::Lower>() = H * w.measured;
   w.S.diagonal().array() += 1.0;
 
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> llt(w.S);

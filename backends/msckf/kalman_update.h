@@ -14,6 +14,12 @@ struct KalmanWorkspace {
   Eigen::VectorXd y;
 };
 
+/// What is known of the zeros of a stack's H.
+enum class MeasurementShape {
+  kFull,
+  kUpperTriangular,  ///< square and upper triangular, as Compress leaves it
+};
+
 /// The update of thesis 6.29 and 6.33 with measurements [H | r] of unit noise:
 ///
 ///   S = H P H' + I = L L',  W = P H' L'^-1,  dx = W L^-1 r,  P <- P - W W'
@@ -23,7 +29,8 @@ struct KalmanWorkspace {
 /// no other component is measured. P (n x n) and dx (n) are written only on success; false where S
 /// is not positive definite, that is where P was none.
 [[nodiscard]] bool KalmanUpdate(const Eigen::Ref<const Eigen::MatrixXd>& H_r,
-                                std::span<const int> columns, Eigen::Ref<Eigen::MatrixXd> P,
-                                Eigen::Ref<Eigen::VectorXd> dx, KalmanWorkspace* workspace);
+                                std::span<const int> columns, MeasurementShape shape,
+                                Eigen::Ref<Eigen::MatrixXd> P, Eigen::Ref<Eigen::VectorXd> dx,
+                                KalmanWorkspace* workspace);
 
 }  // namespace duet

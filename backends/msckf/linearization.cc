@@ -53,17 +53,10 @@ void AddCalibration(const FilterState& state, const VisualColumns& columns, int 
 
 }  // namespace
 
-bool TimeMatters(const FilterState& state) {
-  return state.rig().t_r_s != 0.0 || state.layout().OffsetOf(CalibrationBlock::kTimeOffset) >= 0 ||
-         state.layout().OffsetOf(CalibrationBlock::kReadoutTime) >= 0;
-}
-
 void VisualColumns::Assign(const FilterState& state) {
-  clone_width_ = TimeMatters(state) ? FilterState::kCloneSize : 6;
+  clone_size_ = state.clone_size();
   components_.clear();
-  for (int i = 0; i < static_cast<int>(state.clones().size()); ++i) {
-    for (int k = 0; k < clone_width_; ++k) components_.push_back(state.CloneOffset(i) + k);
-  }
+  for (int i = state.CloneOffset(0); i < state.size(); ++i) components_.push_back(i);
   first_calibration_column_ = width();
   first_calibration_offset_ = state.layout().size();
   for (const CalibrationLayout::Entry& entry : state.layout().entries()) {
@@ -83,11 +76,10 @@ int VisualColumns::CalibrationColumn(const CalibrationLayout& layout, Calibratio
 
 bool LinearizeLandmark(const FilterState& state, const VisualColumns& columns,
                        const LinearizationSettings& settings, int anchor_clone,
-                       const InverseDepth& landmark,
-                       std::span<const CloneObservation> observations, LandmarkRowsRef H_f,
-                       MeasurementRowsRef rows) {
+                       const InverseDepth& landmark, std::span<const CloneObservation> observations,
+                       LandmarkRowsRef H_f, MeasurementRowsRef rows) {
   CHECK_EQ(rows.rows(), static_cast<Eigen::Index>(2 * observations.size()));
-  const bool time_matters = TimeMatters(state);
+  const bool time_matters = state.time_matters();
   const double weight = 1.0 / settings.pixel_noise_px;
   const Clone& anchor = state.clones()[anchor_clone];
   rows.setZero();
@@ -99,11 +91,11 @@ bool LinearizeLandmark(const FilterState& state, const VisualColumns& columns,
     Eigen::Vector2d predicted;
     if (!PredictPixel(state.rig(), anchor.nav.pose(), landmark,
                       Observing(clone, clone.nav, time_matters), observation.pixel, settings.g_G,
-                      &predicted, settings.first_estimates ? nullptr : &J)) {
+                      &predicted, settings.separate_first_estimates ? nullptr : &J)) {
       return false;
     }
     two_rows.rightCols<1>() = weight * (observation.pixel.uv - predicted);
-    if (settings.first_estimates &&
+    if (settings.separate_first_estimates &&
         !PredictPixel(state.rig(), anchor.nav_fej.pose(), landmark,
                       Observing(clone, clone.nav_fej, time_matters), observation.pixel,
                       settings.g_G, &predicted, &J)) {

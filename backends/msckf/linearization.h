@@ -23,22 +23,18 @@ class VisualColumns {
   void Assign(const FilterState& state);
 
   [[nodiscard]] int width() const { return static_cast<int>(components_.size()); }
-  [[nodiscard]] int clone_width() const { return clone_width_; }
-  [[nodiscard]] int CloneColumn(int clone) const { return clone * clone_width_; }
+  [[nodiscard]] int CloneColumn(int clone) const { return clone * clone_size_; }
   /// Column of a calibration block, -1 where it is not estimated.
   [[nodiscard]] int CalibrationColumn(const CalibrationLayout& layout, CalibrationBlock block,
                                       int camera = -1) const;
   [[nodiscard]] std::span<const int> components() const { return components_; }
 
  private:
-  int clone_width_ = 6;
+  int clone_size_ = 6;
   int first_calibration_column_ = 0;
   int first_calibration_offset_ = 0;  // of the cameras' part, in the layout
   std::vector<int> components_;
 };
-
-/// True where pixels are taken at another time than their state's instant, now or after an update.
-[[nodiscard]] bool TimeMatters(const FilterState& state);
 
 /// A pixel of the landmark that is being linearized.
 struct CloneObservation {
@@ -47,7 +43,8 @@ struct CloneObservation {
 };
 
 struct LinearizationSettings {
-  bool first_estimates = true;
+  /// Jacobians at first estimates that are not the current ones (FilterState).
+  bool separate_first_estimates = false;
   double pixel_noise_px = 1.0;
   Eigen::Vector3d g_G = Eigen::Vector3d(0, 0, -9.81);
 };
@@ -55,12 +52,11 @@ struct LinearizationSettings {
 /// The stacked, whitened measurements of one landmark (thesis 6.19 to 6.22, figure 6.3): two rows
 /// an observation, [H_x | r] in `rows` and H_f (against alpha, beta, rho) in `H_f`.
 ///
-/// The residual is taken at the current estimates. The Jacobians are taken at the first estimates
-/// of the clones' orientations, positions and velocities and at the landmark as triangulated, in
-/// its anchor's frame: an anchored landmark has no part in the unobservable directions, so every
-/// row is orthogonal to N(first estimates) of transition.h, whatever the landmark. Calibration is
-/// taken at its current value. False where the point is not in front of a camera at either of the
-/// two linearization points.
+/// The residual is taken at the current estimates, the Jacobians at the clones' first estimates and
+/// at the landmark as triangulated, in its anchor's frame: an anchored landmark has no part in the
+/// unobservable directions, so every row is orthogonal to N(first estimates) of transition.h,
+/// whatever the landmark. Calibration is taken at its current value. False where the point is not
+/// in front of a camera at either of the two linearization points.
 [[nodiscard]] bool LinearizeLandmark(const FilterState& state, const VisualColumns& columns,
                                      const LinearizationSettings& settings, int anchor_clone,
                                      const InverseDepth& landmark,

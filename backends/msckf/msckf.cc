@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "backends/msckf/transition.h"
 #include "common/support/logging.h"
@@ -97,7 +98,7 @@ void Msckf::Augment(const TrackFrameSet& frames) {
   const StageTimer::Scope scope(timer_, "augment");
   state_.Augment(state_.rig().t_d_s);
   output_.features.observed = tracks_.Add(frames, state_.clones().back().id);
-  if (TimeMatters(state_)) RefreshRates();
+  if (state_.time_matters()) RefreshRates();
 }
 
 void Msckf::RefreshRates() {
@@ -121,17 +122,18 @@ void Msckf::UpdateStandstill(const TrackFrameSet& frames) {
   const int previous = clone_count - 2;
   const StandstillResidual standstill = EvaluateStandstill(
       state_.clones()[previous].nav, state_.inertial().nav, setup_.shared.standstill);
-  Eigen::MatrixXd H_r(kStandstillRows, 2 * FilterState::kCloneSize + 1);
-  H_r << standstill.J_i, standstill.J_j, standstill.r;
+  // The previous clone takes part with (theta, p): its velocity is not measured.
+  constexpr int kPrevious = 6;
+  constexpr int kNewest = 9;
+  Eigen::Matrix<double, kStandstillRows, kPrevious + kNewest + 1> H_r;
+  H_r << standstill.J_i.leftCols<kPrevious>(), standstill.J_j, standstill.r;
   H_r.array().colwise() /= standstill.sigma.array();
-  std::array<int, 2 * FilterState::kCloneSize> components;
-  for (int k = 0; k < FilterState::kCloneSize; ++k) {
-    components[k] = state_.CloneOffset(previous) + k;
-    components[FilterState::kCloneSize + k] = k;
-  }
+  std::array<int, kPrevious + kNewest> components;
+  std::iota(components.begin(), components.begin() + kPrevious, state_.CloneOffset(previous));
+  std::iota(components.begin() + kPrevious, components.end(), 0);
   const Eigen::MatrixXd P = Eigen::MatrixXd(state_.P())(components, components);
   if (!standstill_gate_.Passes(H_r.leftCols(H_r.cols() - 1), H_r.rightCols<1>(), P)) return;
-  ApplyUpdate(H_r, components);
+  ApplyUpdate(H_r, components, MeasurementShape::kFull);
   output_.standstill = true;
 }
 
@@ -170,18 +172,20 @@ void Msckf::Compress() {
 
 void Msckf::Update() {
   const StageTimer::Scope scope(timer_, "update");
-  if (stack_->rows() > 0) ApplyUpdate(*stack_, feature_update_.columns().components());
+  if (stack_->rows() == 0) return;
+  const VisualColumns& columns = feature_update_.columns();
+  ApplyUpdate(*stack_, columns.components(), feature_update_.shape());
 }
 
 void Msckf::ApplyUpdate(const Eigen::Ref<const Eigen::MatrixXd>& H_r,
-                        std::span<const int> components) {
+                        std::span<const int> components, MeasurementShape shape) {
   dx_.resize(state_.size());
-  if (!KalmanUpdate(H_r, components, state_.P(), dx_, &kalman_workspace_)) {
+  if (!KalmanUpdate(H_r, components, shape, state_.P(), dx_, &kalman_workspace_)) {
     Fail("the covariance is not positive definite");
     return;
   }
   state_.Correct(dx_, setup_.shared.max_abs_t_d_s, setup_.shared.max_abs_t_r_s);
-  if (options_.rebase) state_.Rebase();
+  if (options_.first_estimates && options_.rebase_first_estimates) state_.Rebase();
 }
 
 void Msckf::Prune() {

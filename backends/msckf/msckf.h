@@ -55,7 +55,8 @@ class Msckf final : public Estimator {
   const EstimatorOutput& Report();
 
   /// The Kalman update and the correction of the state; fails the filter where it can't.
-  void ApplyUpdate(const Eigen::Ref<const Eigen::MatrixXd>& H_r, std::span<const int> components);
+  void ApplyUpdate(const Eigen::Ref<const Eigen::MatrixXd>& H_r, std::span<const int> components,
+                   MeasurementShape shape);
   void RefreshRates();
   void CheckHealth();
   void Fail(const std::string& reason);
