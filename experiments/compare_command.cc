@@ -52,10 +52,11 @@ class Comparator {
       dataset_ = (record_.path() / "dataset").string();
       WriteDefaultRecording(dataset_, FLAGS_cameras == "0,1" ? 2 : 1, FLAGS_seed);
       if (!line_.Given("init")) FLAGS_init = "groundtruth";
+      simulated_ = true;
     }
     session_ = OpenSession(line_, dataset_, FLAGS_tracks);
     (void)session_.Start();  // refuses a start that the recording does not allow, before the work
-    comparison_.dataset = NameOf(session_.recording.folder);
+    comparison_.dataset = simulated_ ? "room_easy (simulated)" : NameOf(session_.recording.folder);
     if (const int status = Track(); status != kDone) return Finish(status);
     for (const std::string& name : EstimatorNames()) {
       if (const int status = RunEstimator(name); status != kDone) return Finish(status);
@@ -191,6 +192,7 @@ class Comparator {
     if (status != kDone && status != kBoundNotMet && status != kInterrupted) return status;
     Manifest& manifest = record_.manifest();
     manifest["dataset"] = DescribeRecording(session_.recording);
+    if (simulated_) manifest["dataset"]["path"] = "dataset/mav0, beside this file";
     manifest["tracks_sha256"] = comparison_.tracks_sha256;
     manifest["init"] = FLAGS_init;
     manifest["seed"] = FLAGS_seed;
@@ -203,6 +205,7 @@ class Comparator {
   const CommandLine& line_;
   RecordFolder record_;
   std::string dataset_;
+  bool simulated_ = false;
   Session session_;
   Comparison comparison_;
   std::vector<NamedTrajectory> estimates_;

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "common/support/logging.h"
+
 namespace duet {
 
 LiveTracker::LiveTracker(std::vector<ImageFiles> files, const RigCalibration& rig,
@@ -18,6 +20,9 @@ LiveTracker::LiveTracker(std::vector<ImageFiles> files, const RigCalibration& ri
 
 const TrackFrameSet* LiveTracker::Next() {
   const std::optional<ImageSet> images = images_.Next();
+  for (; reported_drops_ < images_.dropped().size(); ++reported_drops_) {
+    LOG(WARNING) << images_.dropped()[reported_drops_].path << ": cannot be read; left out";
+  }
   if (!images) return nullptr;
   stages_.StartFrame();
   total_.StartFrame();

@@ -39,6 +39,7 @@ class LiveTracker : public FrameSource {
   StageTimer stages_;
   StageTimer total_;
   double decode_ms_ = 0.0;
+  std::size_t reported_drops_ = 0;
 };
 
 }  // namespace duet

@@ -30,18 +30,23 @@ namespace {
 
 }  // namespace
 
-ProgramResult RunDuet(const std::vector<std::string>& arguments, double interrupt_after_s) {
+ProgramResult RunDuet(const std::vector<std::string>& arguments,
+                      const std::function<bool()>& interrupt_when) {
+  constexpr useconds_t kPoll_us = 5000;
   const TemporaryFolder folder;
   const std::string out = folder / "out";
   const std::string err = folder / "err";
   const pid_t child = fork();
   if (child == 0) BecomeDuet(arguments, out, err);
-  if (interrupt_after_s > 0.0) {
-    usleep(static_cast<useconds_t>(interrupt_after_s * 1e6));
-    kill(child, SIGINT);
-  }
   int status = 0;
-  waitpid(child, &status, 0);
+  bool interrupted = interrupt_when == nullptr;
+  while (waitpid(child, &status, interrupted ? 0 : WNOHANG) == 0) {
+    if (interrupt_when()) {
+      kill(child, SIGINT);
+      interrupted = true;
+    }
+    usleep(kPoll_us);
+  }
   return {WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status), ReadFile(out),
           ReadFile(err)};
 }
@@ -79,7 +84,8 @@ std::vector<std::string> FilesIn(const fs::path& folder) {
 
 fs::path RealData() {
   const char* told = std::getenv("DUET_DATA");
-  const fs::path folder = told != nullptr ? fs::path(told) : fs::path(DUET_SOURCE) / "../shared/data";
+  const fs::path folder =
+      told != nullptr ? fs::path(told) : fs::path(DUET_SOURCE) / "../shared/data";
   return fs::exists(folder / "euroc") ? folder : fs::path();
 }
 

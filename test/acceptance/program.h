@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,10 @@ struct ProgramResult {
   std::string err;
 };
 
-/// Runs the built `duet` with these arguments and waits for it. Where `interrupt_after_s` is
-/// positive, sends it SIGINT once, that long after its start.
+/// Runs the built `duet` with these arguments and waits for it. Where `interrupt_when` is given, it
+/// is asked again and again, and when it says yes the program gets SIGINT, once.
 [[nodiscard]] ProgramResult RunDuet(const std::vector<std::string>& arguments,
-                                    double interrupt_after_s = 0.0);
+                                    const std::function<bool()>& interrupt_when = nullptr);
 
 /// A folder that goes with the object.
 class TemporaryFolder {
