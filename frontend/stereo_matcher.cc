@@ -54,12 +54,13 @@ double TriangulateInverseDepth(const Eigen::Vector3d& ray_R, const Eigen::Vector
 // Of the parabola through a score and its neighbours where it is the highest of the three, else 0:
 // the grid of whole pixels cuts peaks by up to a tenth.
 float PeakHeight(const std::vector<float>& scores, std::size_t i) {
+  const bool inner = i > 0 && i + 1 < scores.size();
   const float before = i > 0 ? scores[i - 1] : -1.0F;
   const float after = i + 1 < scores.size() ? scores[i + 1] : -1.0F;
   if (before > scores[i] || after >= scores[i]) return 0.0F;
+  if (!inner) return scores[i];
   const float slope = 0.5F * (after - before);
-  const float bend = 2.0F * scores[i] - before - after;
-  return scores[i] + 0.5F * slope * slope / bend;
+  return scores[i] + 0.5F * slope * slope / (2.0F * scores[i] - before - after);
 }
 
 cv::Point Halved(cv::Point2f point) { return {cvRound(0.5F * point.x), cvRound(0.5F * point.y)}; }

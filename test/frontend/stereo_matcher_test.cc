@@ -87,7 +87,9 @@ TEST_F(StereoMatcherTest, RefusesRepeatedTexture) {
   }
   const KltTracker tracker(options_);
   for (ImagePyramid& pyramid : pyramids_) tracker.BuildPyramid(stripes, &pyramid);
-  EXPECT_LE(Match(rig_), static_cast<int>(queries_.size() / 10));
+  // Left are points whose other places lie outside of the image or are cut differently by the
+  // grid of pixels.
+  EXPECT_LE(Match(rig_), static_cast<int>(queries_.size() / 5));
 }
 
 }  // namespace
