@@ -1,5 +1,7 @@
 #include "experiments/log_capture.h"
 
+#include <opencv2/core/utils/logger.hpp>
+
 #include "experiments/progress.h"
 
 namespace duet {
@@ -37,6 +39,8 @@ void InitializeLogging(const char* program) {
     google::SetLogDestination(severity, "");
   }
   FLAGS_stderrthreshold = google::GLOG_FATAL;
+  // What OpenCV would say of an unreadable image, the image source says.
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
 }
 
 }  // namespace duet

@@ -33,6 +33,7 @@ class LogCapture : public google::LogSink {
 };
 
 /// glog writes no files of its own and keeps stderr for fatal errors; the rest goes to LogCapture.
+/// OpenCV says nothing.
 void InitializeLogging(const char* program);
 
 }  // namespace duet

@@ -3,10 +3,26 @@
 #include <algorithm>
 
 #include "common/support/input_error.h"
+#include "common/support/sha256.h"
 #include "common/support/text_file.h"
 
 namespace duet {
 namespace fs = std::filesystem;
+namespace {
+
+/// Over the settings that decide about the tracks: the number of threads does not.
+std::string HashTrackingSettings(const std::vector<ResolvedValue>& settings) {
+  std::string text;
+  for (const ResolvedValue& setting : settings) {
+    const bool counts =
+        setting.key.rfind("frontend.", 0) == 0 || setting.key == "shared.max_tracks";
+    if (!counts || setting.key == "frontend.threads") continue;
+    text += setting.key + ": " + setting.value + "\n";
+  }
+  return Sha256Hex(text);
+}
+
+}  // namespace
 
 void RequireAbsent(const std::string& out) {
   std::error_code ignored;
@@ -67,10 +83,10 @@ Manifest DescribeTracking(const LiveTracker& tracker, const std::vector<TrackFra
 
 std::string WriteTracks(const fs::path& folder, const Recording& recording,
                         const std::vector<TrackFrameSet>& frames,
-                        const std::string& settings_sha256) {
+                        const std::vector<ResolvedValue>& settings) {
   for (std::size_t k = 0; k < recording.camera_sensors.size(); ++k) {
     CameraSensor sensor = recording.camera_sensors[k];
-    sensor.frontend_settings_sha256 = settings_sha256;
+    sensor.frontend_settings_sha256 = HashTrackingSettings(settings);
     sensor.image_set_sha256 = recording.fingerprint;
     WriteTrackFolder(folder / ("tracks" + std::to_string(recording.camera_numbers[k])), frames,
                      static_cast<int>(k), sensor);

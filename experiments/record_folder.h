@@ -47,6 +47,6 @@ class RecordFolder {
 /// hash. What is written replays to exactly `frames`.
 std::string WriteTracks(const std::filesystem::path& folder, const Recording& recording,
                         const std::vector<TrackFrameSet>& frames,
-                        const std::string& settings_sha256);
+                        const std::vector<ResolvedValue>& settings);
 
 }  // namespace duet

@@ -100,7 +100,7 @@ int RunRun(const CommandLine& line) {
   manifest["peak_memory_mb"] = PeakMemoryMb();
   if (tracker) {
     manifest["tracks_sha256"] =
-        WriteTracks(record.path(), session.recording, tracked, session.sources.SettingsSha256());
+        WriteTracks(record.path(), session.recording, tracked, session.sources.values());
     manifest["frontend"] = DescribeTracking(*tracker, tracked);
   }
   manifest["backend"] = FLAGS_backend;

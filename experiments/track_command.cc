@@ -8,6 +8,7 @@
 #include "experiments/common_flags.h"
 #include "experiments/exit_status.h"
 #include "experiments/interrupt.h"
+#include "experiments/overlay_window.h"
 #include "experiments/progress.h"
 #include "experiments/record_folder.h"
 #include "experiments/session.h"
@@ -21,20 +22,30 @@ DEFINE_bool(show, false, "Show the tracks in a window while they are made.");
 namespace duet {
 namespace {
 
-/// Draws what the front end sees.
-class OverlayWriter {
+/// Draws what the front end sees, into files, a window or both.
+class Overlay {
  public:
-  explicit OverlayWriter(const std::string& folder) : folder_(folder) {}
+  Overlay() {
+    if (FLAGS_show) window_.emplace();
+    if (!FLAGS_save_overlay.empty()) folder_.emplace(FLAGS_save_overlay);
+  }
 
   void Add(const TrackFrameSet& tracks, const ImageSet& images) {
+    if (!window_ && !folder_) return;
     overlay_.Add(tracks);
-    SaveOverlay(folder_.path() / (std::to_string(tracks.timestamp) + ".png"),
-                overlay_.DrawAll(images.images));
+    const cv::Mat picture = overlay_.DrawAll(images.images);
+    if (window_) window_->Show(picture);
+    if (folder_) {
+      SaveOverlay(folder_->path() / (std::to_string(tracks.timestamp) + ".png"), picture);
+    }
   }
-  void Commit() { folder_.Commit(); }
+  void Commit() {
+    if (folder_) folder_->Commit();
+  }
 
  private:
-  OutputFolder folder_;
+  std::optional<OverlayWindow> window_;
+  std::optional<OutputFolder> folder_;
   TrackOverlay overlay_;
 };
 
@@ -48,12 +59,11 @@ int RunTrack(const CommandLine& line) {
                      "has no images to track (cam<k>/data.csv); its tracks can be run as they are");
   }
   RecordFolder record(FLAGS_out, line, log);
-  std::optional<OverlayWriter> overlay;
-  if (!FLAGS_save_overlay.empty()) overlay.emplace(FLAGS_save_overlay);
+  Overlay overlay;
   std::vector<TrackFrameSet> frames;
   const auto tracker = StartTracking(session, [&](const auto& tracks, const auto& images) {
     frames.push_back(tracks);
-    if (overlay) overlay->Add(tracks, images);
+    overlay.Add(tracks, images);
   });
 
   Progress progress("tracking", tracker->count(), "frames", FLAGS_quiet);
@@ -67,7 +77,7 @@ int RunTrack(const CommandLine& line) {
 
   timing.Write(record.path() / "timing.csv");
   const std::string hash =
-      WriteTracks(record.path(), session.recording, frames, session.sources.SettingsSha256());
+      WriteTracks(record.path(), session.recording, frames, session.sources.values());
   Manifest& manifest = record.manifest();
   manifest["dataset"] = DescribeRecording(session.recording);
   manifest["tracks_sha256"] = hash;
@@ -76,7 +86,7 @@ int RunTrack(const CommandLine& line) {
   manifest["outcome"] = {{"status", Interrupted() ? "interrupted" : "done"}};
   manifest["peak_memory_mb"] = PeakMemoryMb();
   record.Commit(session.sources);
-  if (overlay) overlay->Commit();
+  overlay.Commit();
   std::printf("%zu frames tracked, SHA-256 %s\n", frames.size(), hash.c_str());
   return Interrupted() ? kInterrupted : kDone;
 }
@@ -95,6 +105,7 @@ Command TrackCommand() {
       .flags = CommonFlags(true),
       .run = RunTrack};
   command.flags.push_back({.name = "save-overlay", .value = "DIR"});
+  command.flags.push_back({.name = "show"});
   return command;
 }
 

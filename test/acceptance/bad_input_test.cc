@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <opencv2/imgcodecs.hpp>
+#include <ostream>
 
 #include "test/acceptance/program.h"
 #include "test/acceptance/small_recording.h"
@@ -20,6 +21,8 @@ struct BadInput {
   std::function<void(const fs::path& mav)> spoil;
   std::vector<std::string> arguments;
   std::vector<std::string> expected;
+
+  friend void PrintTo(const BadInput& input, std::ostream* out) { *out << input.name; }
 };
 
 void Replace(const fs::path& path, const std::string& old_text, const std::string& new_text) {
@@ -121,7 +124,7 @@ std::vector<BadInput> BadInputs() {
          cv::imwrite(Image(mav, 3), cv::Mat(200, 320, CV_8U, cv::Scalar(90)));
        },
        {},
-       {"1000000000150000000.png", "320x200", "320x240"}},
+       {"1000000000150000000.png", "320 x 200", "320 x 240"}},
       {"NoDistortion",
        [](const fs::path& mav) {
          Replace(mav / "cam0/sensor.yaml", "distortion_coefficients: [-0.1, 0.01, 0.0, 0.0]\n", "");
