@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "common/geometry/so3.h"
 
@@ -11,17 +12,29 @@ namespace {
 // Fewer common tracks than this say nothing about motion.
 constexpr std::size_t kMinCommonTracks = 8;
 constexpr double kMotionQuantile = 0.75;
+// Vibration may shake single frames by this multiple of what their means may move.
+constexpr double kMaxExcursion = 3.0;
 
-// Distances in px between the tracks that both frames hold (both sorted by id).
-void CommonTrackMotions(const TrackFrame& a, const TrackFrame& b, std::vector<float>* motions) {
-  motions->clear();
+// Calls function(i, observation of `a`) for the tracks that `base` and `a` share (both sorted by
+// id), i the index in `base`.
+template <class Function>
+void ForCommonTracks(const TrackFrame& base, const TrackFrame& a, Function&& function) {
   auto it = a.observations.begin();
-  for (const TrackObservation& o : b.observations) {
-    while (it != a.observations.end() && it->track_id < o.track_id) ++it;
-    if (it == a.observations.end()) break;
-    if (it->track_id != o.track_id) continue;
-    motions->push_back(std::hypot(it->u - o.u, it->v - o.v));
+  for (std::size_t i = 0; i < base.observations.size(); ++i) {
+    const std::uint64_t id = base.observations[i].track_id;
+    while (it != a.observations.end() && it->track_id < id) ++it;
+    if (it == a.observations.end()) return;
+    if (it->track_id == id) function(i, *it);
   }
+}
+
+// The kMotionQuantile of the values, which are reordered; nothing where they are too few.
+std::optional<float> MotionQuantile(std::vector<float>* values) {
+  if (values->size() < kMinCommonTracks) return std::nullopt;
+  const auto nth = values->begin() + static_cast<std::ptrdiff_t>(
+                                         kMotionQuantile * static_cast<double>(values->size()));
+  std::nth_element(values->begin(), nth, values->end());
+  return *nth;
 }
 
 // Mean and per-axis variance of the mean (readings taken as independent) of one half.
@@ -59,20 +72,9 @@ bool StandstillDetector::Update(const TrackFrameSet& frames, Timestamp instant,
     history_.erase(history_.begin());
   }
   const bool spans = !history_.empty() && history_.front().timestamp <= window_start + window / 10;
-  bool at_rest = spans && imu.Covers(instant - window, instant);
-  for (auto it = history_.begin(); at_rest && it != history_.end(); ++it) {
-    CommonTrackMotions(*it, newest, &motions_);
-    if (motions_.size() < kMinCommonTracks) {
-      at_rest = false;
-      break;
-    }
-    const auto nth = motions_.begin() + static_cast<std::ptrdiff_t>(
-                                            kMotionQuantile * static_cast<double>(motions_.size()));
-    std::nth_element(motions_.begin(), nth, motions_.end());
-    at_rest = *nth <= options_.max_image_motion_px;
-  }
+  const bool still = spans && imu.Covers(instant - window, instant) && ImageStands(newest);
   history_.push_back(newest);
-  if (!at_rest) return false;
+  if (!still) return false;
 
   imu.Extract(instant - window, instant, &readings_);
   if (readings_.size() < 8) return false;
@@ -83,6 +85,39 @@ bool StandstillDetector::Update(const TrackFrameSet& frames, Timestamp instant,
   return ((second.mean - first.mean).cwiseAbs2().array() <=
           bound * bound * (first.variance + second.variance).array() + 1e-18)
       .all();
+}
+
+bool StandstillDetector::ImageStands(const TrackFrame& newest) {
+  for (const TrackFrame& earlier : history_) {
+    motions_.clear();
+    ForCommonTracks(newest, earlier, [&](std::size_t i, const TrackObservation& o) {
+      motions_.push_back(
+          std::hypot(o.u - newest.observations[i].u, o.v - newest.observations[i].v));
+    });
+    const std::optional<float> excursion = MotionQuantile(&motions_);
+    if (!excursion || *excursion > kMaxExcursion * options_.max_image_motion_px) return false;
+  }
+  // Mean over the earlier half against mean over the later one, for tracks seen in all frames.
+  const std::size_t frames = history_.size() + 1;
+  const std::size_t earlier_half = frames / 2;
+  sums_.assign(newest.observations.size(), HalfSums());
+  const auto add = [&](const TrackFrame& frame, bool later) {
+    ForCommonTracks(newest, frame, [&](std::size_t i, const TrackObservation& o) {
+      (later ? sums_[i].later : sums_[i].earlier) += Eigen::Vector2f(o.u, o.v);
+      ++sums_[i].frames;
+    });
+  };
+  for (std::size_t f = 0; f < history_.size(); ++f) add(history_[f], f >= earlier_half);
+  add(newest, true);
+  motions_.clear();
+  for (const HalfSums& sum : sums_) {
+    if (sum.frames != frames) continue;
+    motions_.push_back((sum.later / static_cast<float>(frames - earlier_half) -
+                        sum.earlier / static_cast<float>(earlier_half))
+                           .norm());
+  }
+  const std::optional<float> motion = MotionQuantile(&motions_);
+  return motion && *motion <= options_.max_image_motion_px;
 }
 
 StandstillResidual EvaluateStandstill(const NavState& state_i, const NavState& state_j,
