@@ -19,10 +19,10 @@ struct FrontendOptions {
   double clahe_clip_limit = 3.0;
 
   // Tracking.
-  int klt_half_window_px = 7;
+  int klt_half_window_px = 6;
   int klt_levels = 4;
-  int klt_iterations = 12;
-  double klt_epsilon_px = 0.03;
+  int klt_iterations = 8;
+  double klt_epsilon_px = 0.05;
   double forward_backward_px = 0.5;
   bool gyro_prediction = true;
   bool anchor = true;
