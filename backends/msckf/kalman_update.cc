@@ -7,8 +7,8 @@
 namespace duet {
 
 bool KalmanUpdate(const Eigen::Ref<const Eigen::MatrixXd>& H_r, std::span<const int> columns,
-                  MeasurementShape shape, Eigen::Ref<Eigen::MatrixXd> P,
-                  Eigen::Ref<Eigen::VectorXd> dx, KalmanWorkspace* workspace) {
+                  Eigen::Ref<Eigen::MatrixXd> P, Eigen::Ref<Eigen::VectorXd> dx,
+                  KalmanWorkspace* workspace, MeasurementShape shape) {
   const auto width = static_cast<Eigen::Index>(columns.size());
   CHECK_EQ(H_r.cols(), width + 1);
   const auto n = P.rows();

@@ -29,8 +29,8 @@ enum class MeasurementShape {
 /// no other component is measured. P (n x n) and dx (n) are written only on success; false where S
 /// is not positive definite, that is where P was none.
 [[nodiscard]] bool KalmanUpdate(const Eigen::Ref<const Eigen::MatrixXd>& H_r,
-                                std::span<const int> columns, MeasurementShape shape,
-                                Eigen::Ref<Eigen::MatrixXd> P, Eigen::Ref<Eigen::VectorXd> dx,
-                                KalmanWorkspace* workspace);
+                                std::span<const int> columns, Eigen::Ref<Eigen::MatrixXd> P,
+                                Eigen::Ref<Eigen::VectorXd> dx, KalmanWorkspace* workspace,
+                                MeasurementShape shape = MeasurementShape::kFull);
 
 }  // namespace duet

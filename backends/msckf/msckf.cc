@@ -180,7 +180,7 @@ void Msckf::Update() {
 void Msckf::ApplyUpdate(const Eigen::Ref<const Eigen::MatrixXd>& H_r,
                         std::span<const int> components, MeasurementShape shape) {
   dx_.resize(state_.size());
-  if (!KalmanUpdate(H_r, components, shape, state_.P(), dx_, &kalman_workspace_)) {
+  if (!KalmanUpdate(H_r, components, state_.P(), dx_, &kalman_workspace_, shape)) {
     Fail("the covariance is not positive definite");
     return;
   }
