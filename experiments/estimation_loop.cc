@@ -1,5 +1,6 @@
 #include "experiments/estimation_loop.h"
 
+#include "common/support/logging.h"
 #include "common/support/stage_timer.h"
 #include "experiments/interrupt.h"
 
@@ -51,6 +52,8 @@ LoopOutcome RunEstimationLoop(const LoopParts& parts) {
         continue;
       }
       estimator.Initialize(*initial);
+      LOG(INFO) << "started at " << initial->state.instant << " ns, after "
+                << recorder.summary().waiting << " frames";
       started = true;
     }
     const EstimatorOutput* output = nullptr;

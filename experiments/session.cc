@@ -40,6 +40,12 @@ Session OpenSession(const CommandLine& line, const std::string& dataset,
   }
   session.recording = LoadRecording(dataset, options);
   for (const std::string& warning : session.recording.warnings) LOG(WARNING) << warning;
+  const Recording& recording = session.recording;
+  LOG(INFO) << recording.folder.string() << ": " << recording.FrameStamps().size()
+            << (recording.vision == Vision::kImages ? " stamps of images, " : " frames of tracks, ")
+            << recording.rig.cameras.size() << " cameras, " << recording.imu.size()
+            << " IMU samples, " << (recording.truth ? recording.truth->poses.size() : 0)
+            << " true poses";
   return session;
 }
 
