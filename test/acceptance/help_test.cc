@@ -59,7 +59,7 @@ TEST(HelpTest, VersionNamesCommitBuildAndLibraries) {
 }
 
 TEST(ConfigTest, TheShippedConfigurationIsTheDefaultsWithTheirMeaning) {
-  const std::string path = std::string(DUET_SOURCE) + "/configs/estimators/default.yaml";
+  const std::string path = DUET_SOURCE "/configs/estimators/default.yaml";
   const ProgramResult dump = RunDuet({"config"});
   EXPECT_EQ(dump.status, 0);
   EXPECT_EQ(dump.out, ReadFile(path)) << "write it again: duet config > " << path;
