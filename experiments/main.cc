@@ -18,7 +18,7 @@ int Fail(ExitStatus status, const char* what) {
 int Run(int argc, char** argv) {
   try {
     return Dispatch({CompareCommand(), TrackCommand(), RunCommand(), EvaluateCommand(),
-                     SimulateCommand(), MonteCarloCommand(), ConfigCommand()},
+                     CheckCommand(), SimulateCommand(), MonteCarloCommand(), ConfigCommand()},
                     argc, argv);
   } catch (const InputError& error) {
     return Fail(kBadInput, error.what());
