@@ -154,18 +154,20 @@ void CheckDensities(const ImuNoise& noise, Findings* findings) {
 
 void CheckNoiseAtRest(const std::vector<ImuSample>& imu, const ImuSensor& sensor,
                       const RestSpan& span, Findings* findings) {
+  // Setting off and coming to rest still belong to a span: its ends are left out.
+  const Timestamp margin = (span.end - span.start) / 5;
   const auto before = [](const ImuSample& sample, Timestamp t) { return sample.timestamp < t; };
   const auto begin = static_cast<std::size_t>(
-      std::lower_bound(imu.begin(), imu.end(), span.start, before) - imu.begin());
+      std::lower_bound(imu.begin(), imu.end(), span.start + margin, before) - imu.begin());
   const auto end = static_cast<std::size_t>(
-      std::lower_bound(imu.begin(), imu.end(), span.end, before) - imu.begin());
+      std::lower_bound(imu.begin(), imu.end(), span.end - margin, before) - imu.begin());
   if (end < begin + 20) return;
   const double rate_hz = static_cast<double>(end - 1 - begin) /
                          SecondsBetween(imu[begin].timestamp, imu[end - 1].timestamp);
   const Moments gyro = MomentsOf(imu, begin, end, &ImuSample::omega_m);
   const Moments force = MomentsOf(imu, begin, end, &ImuSample::a_m);
-  const double gyro_sigma = std::sqrt(gyro.variance.mean());
-  const double force_sigma = std::sqrt(force.variance.mean());
+  const double gyro_sigma = std::sqrt(gyro.variance.maxCoeff());
+  const double force_sigma = std::sqrt(force.variance.maxCoeff());
   const double gyro_ratio = gyro_sigma / (sensor.noise.gyroscope_density * std::sqrt(rate_hz));
   const double force_ratio =
       force_sigma / (sensor.noise.accelerometer_density * std::sqrt(rate_hz));
@@ -174,8 +176,8 @@ void CheckNoiseAtRest(const std::vector<ImuSample>& imu, const ImuSensor& sensor
   findings->push_back(
       {vibrates || too_quiet ? Severity::kWarning : Severity::kInfo,
        "imu.noise_at_rest",
-       Sentence("at rest the gyroscope scatters by %.3g rad/s and the accelerometer by %.3g m/s^2: "
-                "%.1f and %.1f times what the told densities say at %.0f Hz",
+       Sentence("at rest the gyroscope scatters by %.3g rad/s and the accelerometer by %.3g m/s^2 "
+                "(worst axes): %.1f and %.1f times what the told densities say at %.0f Hz",
                 gyro_sigma, force_sigma, gyro_ratio, force_ratio, rate_hz),
        vibrates    ? "Something vibrates (motors?), or the densities are too small: judge rest by "
                      "means, and do not take the densities for what this motion does."
