@@ -33,6 +33,7 @@ constexpr double kMinJump_m = 1.5e-3;
 constexpr double kMinJump_rad = 3e-3;
 constexpr std::size_t kMinPoses = 5;
 constexpr double kMinSpan_s = 0.1;
+constexpr double kMaxExtrapolation_s = 0.01;
 
 // Residual (theta, p) of one pose and its Jacobian to x.
 void Evaluate(const PoseAndDelta& pose, const InertialState& x, const ImuCalibration& calibration,
@@ -141,6 +142,12 @@ InitializationResult InitializeFromPoses(const std::vector<StampedPose>& poses,
                                          const InitializationOptions& options) {
   if (!imu.Covers(instant, instant)) {
     return InitializationFailure{"the IMU does not cover the first frame's instant"};
+  }
+  // A pose on the far side of the first frame is needed, or one so near that nothing is extrapolated.
+  const Timestamp reach = ToNanoseconds(kMaxExtrapolation_s);
+  if (poses.empty() || instant < poses.front().timestamp - reach ||
+      instant > poses.back().timestamp + reach) {
+    return InitializationFailure{"the ground truth's poses do not reach the first frame"};
   }
   const Timestamp half_width = ToNanoseconds(options.fit_half_width_s);
   std::vector<PoseAndDelta> near;
