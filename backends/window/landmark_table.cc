@@ -1,6 +1,7 @@
 #include "backends/window/landmark_table.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace duet {
 
@@ -22,16 +23,21 @@ Landmark& LandmarkTable::FindOrAdd(std::uint64_t track_id, std::size_t sorted) {
   return *landmarks_.insert(added, std::move(landmark));
 }
 
-int LandmarkTable::AddFrame(const TrackFrameSet& frames, int frame) {
+int LandmarkTable::AddFrame(const TrackFrameSet& frames, int frame, const RigCalibration& rig) {
   for (Landmark& landmark : landmarks_) landmark.seen_newest = false;
   const std::size_t sorted = landmarks_.size();
   int count = 0;
   for (const TrackFrame& camera_frame : frames.frames) {
     for (const TrackObservation& o : camera_frame.observations) {
-      Landmark& landmark = FindOrAdd(o.track_id, sorted);
-      landmark.observations.push_back({frame, {camera_frame.camera, Eigen::Vector2d(o.u, o.v)}});
-      landmark.seen_newest = true;
       ++count;
+      const Eigen::Vector2d uv(o.u, o.v);
+      const CameraCalibration& camera = rig.cameras[camera_frame.camera];
+      const auto direction_C = camera.model.Unproject(uv);
+      if (!direction_C) continue;
+      Landmark& landmark = FindOrAdd(o.track_id, sorted);
+      const Eigen::Vector3d bearing_B = camera.R_CB.conjugate() * direction_C->normalized();
+      landmark.observations.push_back({frame, {camera_frame.camera, uv}, bearing_B});
+      landmark.seen_newest = true;
     }
   }
   std::inplace_merge(landmarks_.begin(), landmarks_.begin() + static_cast<std::ptrdiff_t>(sorted),
@@ -78,6 +84,17 @@ void LandmarkTable::RemoveEmpty() {
     }
   }
   std::erase_if(landmarks_, [](const Landmark& l) { return l.observations.empty(); });
+}
+
+bool HasParallax(const Landmark& landmark, const WindowPoint& point, double min_parallax_rad) {
+  const double sin_min = std::sin(min_parallax_rad);
+  const Eigen::Vector3d first =
+      point.nav[landmark.anchor()].R_GB * landmark.observations.front().bearing_B;
+  for (const LandmarkObservation& o : landmark.observations) {
+    const Eigen::Vector3d ray = point.nav[o.frame].R_GB * o.bearing_B;
+    if (first.cross(ray).squaredNorm() > sin_min * sin_min) return true;
+  }
+  return false;
 }
 
 bool FixByAnchorPixel(const RigCalibration& rig, Landmark* landmark) {

@@ -12,8 +12,9 @@ namespace duet {
 /// first frame that it has a pixel in; where that one leaves, its value moves on to the next.
 class LandmarkTable {
  public:
-  /// Takes in a stamp's tracks as those of frame `frame`, the newest. Returns the number of pixels.
-  int AddFrame(const TrackFrameSet& frames, int frame);
+  /// Takes in a stamp's tracks as those of frame `frame`, the newest. Pixels that the camera model
+  /// can't undistort are left out. Returns the number of pixels in the frame.
+  int AddFrame(const TrackFrameSet& frames, int frame, const RigCalibration& rig);
 
   /// Forgets a frame's pixels; frames after it count down by one. Landmarks anchored there are
   /// anchored anew: the value is expressed in the next frame's camera (it must not be part of a
@@ -35,6 +36,12 @@ class LandmarkTable {
   std::vector<Landmark> landmarks_;
   std::vector<std::vector<LandmarkObservation>> spare_;  // memory of ended landmarks
 };
+
+/// True where two rays of the landmark, the anchor's and a later one, differ by more than the
+/// angle. Without, its depth is free: the solver would move it anywhere, and a point taken for near
+/// pretends to fix the rig's position.
+[[nodiscard]] bool HasParallax(const Landmark& landmark, const WindowPoint& point,
+                               double min_parallax_rad);
 
 /// Sets alpha and beta to what the anchor's pixel in camera C0 says, keeping rho: for the mode that
 /// takes that pixel as free of noise. False where there is none or it can't be undistorted.

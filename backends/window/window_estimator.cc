@@ -45,6 +45,7 @@ void WindowEstimator::Initialize(const InitialCondition& initial) {
   frame.origin = frame.state;
   frame.pose_in_prior = frame.velocity_in_prior = frame.biases_in_prior = true;
   frames_.push_back(std::move(frame));
+  last_aided_ = initial.state.instant;
   prior_ = StartPrior(initial.covariance, rig_, layout_);
 }
 
@@ -73,9 +74,11 @@ bool WindowEstimator::Accept(const TrackFrameSet& frames) {
   output_.standstill = false;
   if (output_.status == EstimatorStatus::kFailed) return false;
   output_.rig = rig_;
-  if (!initial_) return false;
   instant_ = frames.timestamp + ToNanoseconds(rig_.t_d_s);
-  if (instant_ < initial_->state.instant) return false;
+  if (!initial_ || instant_ < initial_->state.instant) {
+    (void)standstill_.Update(frames, instant_, imu_);  // rest may have begun before the start
+    return false;
+  }
 
   const Timestamp last = frames_.back().state.instant;
   const bool first = newest() == 0 && table_.landmarks().empty() && instant_ == last;
@@ -88,6 +91,10 @@ bool WindowEstimator::Accept(const TrackFrameSet& frames) {
     return false;
   }
   if (imu_.LongestGap(last, instant_) > setup_.shared.max_imu_gap_s) {
+    if (SecondsBetween(last, instant_) > options_.max_unaided_s) {
+      Fail("the IMU has a gap that no frame reaches over");
+      return false;
+    }
     Skip("the IMU has a gap in the frame's interval");
     return false;
   }
@@ -146,7 +153,7 @@ void WindowEstimator::AppendFrame(const TrackFrameSet& frames) {
   for (const Landmark& landmark : table_.landmarks()) {
     output_.features.lost += landmark.seen_newest ? 1 : 0;
   }
-  output_.features.observed = table_.AddFrame(frames, newest());
+  output_.features.observed = table_.AddFrame(frames, newest(), rig_);
   for (const Landmark& landmark : table_.landmarks()) {
     const auto& o = landmark.observations;
     if (landmark.seen_newest && o.front().frame < newest()) --output_.features.lost;
@@ -165,8 +172,8 @@ void WindowEstimator::TriangulateNew() {
   TriangulationOptions triangulation;
   triangulation.min_parallax_rad = options_.min_parallax_rad;
   for (Landmark& landmark : table_.landmarks()) {
-    if (landmark.has_value || !landmark.seen_newest) continue;
-    if (landmark.observations.size() < 2) continue;
+    if (landmark.has_value || landmark.observations.size() < 2) continue;
+    if (!landmark.seen_newest && options_.tracks == WindowOptions::Tracks::kLive) continue;
     triangulation_.clear();
     for (const LandmarkObservation& o : landmark.observations) {
       const WindowFrame& frame = frames_[o.frame];
@@ -206,13 +213,18 @@ void WindowEstimator::SelectLandmarks() {
     Landmark& landmark = landmarks[l];
     landmark.in_problem = false;
     if (!landmark.has_value || landmark.observations.size() < 2) continue;
+    if (!HasParallax(landmark, linearizer_.now(), options_.min_parallax_rad)) continue;
     Eigen::Vector2d r;
     for (const LandmarkObservation& o : landmark.observations) {
       landmark.has_value =
           landmark.has_value && EvaluateReprojection(reprojection_, linearizer_.now(), frames_,
                                                      landmark.anchor(), o, landmark.value, &r);
     }
-    if (landmark.has_value) selection_.push_back(l);
+    const bool finished =
+        !landmark.seen_newest || (landmark.anchor() == 0 && newest() + 1 >= options_.max_frames);
+    if (landmark.has_value && (finished || options_.tracks == WindowOptions::Tracks::kLive)) {
+      selection_.push_back(l);
+    }
   }
   if (static_cast<int>(selection_.size()) > options_.max_landmarks) {
     std::stable_sort(selection_.begin(), selection_.end(), [&](int a, int b) {
@@ -222,7 +234,9 @@ void WindowEstimator::SelectLandmarks() {
   }
   for (const int l : selection_) {
     landmarks[l].in_problem = true;
-    output_.features.used += landmarks[l].seen_newest ? 1 : 0;
+    const bool counts =
+        landmarks[l].seen_newest || options_.tracks == WindowOptions::Tracks::kFinished;
+    output_.features.used += counts ? 1 : 0;
   }
 }
 
@@ -319,10 +333,13 @@ void WindowEstimator::Report() {
   if (covariance.size() == 0) return Fail("the information matrix is not positive definite");
   output_.covariance = std::move(covariance);
 
-  const bool enough = output_.features.used >= options_.min_landmarks;
-  const bool held = enough || output_.standstill;
-  output_.status = held ? EstimatorStatus::kTracking : EstimatorStatus::kDeadReckoning;
-  output_.reason = held ? "" : "too few landmarks in the newest frame";
+  if (output_.features.used >= options_.min_landmarks || output_.standstill) {
+    last_aided_ = output_.state.instant;
+  }
+  const bool seen = output_.features.observed >= options_.min_landmarks || output_.standstill;
+  const bool aided = SecondsBetween(last_aided_, output_.state.instant) <= options_.max_unaided_s;
+  output_.status = seen && aided ? EstimatorStatus::kTracking : EstimatorStatus::kDeadReckoning;
+  output_.reason = !seen ? "too few tracks" : !aided ? "too few landmarks" : "";
 }
 
 void WindowEstimator::Slide() {

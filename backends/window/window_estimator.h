@@ -91,6 +91,7 @@ class WindowEstimator final : public Estimator {
 
   // Of the frame at hand.
   Timestamp instant_ = 0;
+  Timestamp last_aided_ = 0;  // by landmarks or by the standstill measurement
   std::optional<ImuLink> new_link_;
   bool keyframe_ = true;    // the second newest frame stays
   int dropped_frame_ = -1;  // leaves the window in Slide

@@ -5,6 +5,7 @@ namespace duet {
 /// Settings of the sliding-window optimizer (backends/window/window_estimator.h).
 struct WindowOptions {
   enum class Keyframes { kParallax, kEveryFrame };
+  enum class Tracks { kLive, kFinished };
   enum class LiveLandmarks { kSplit, kDrop };
   enum class LandmarkParameters { kFull, kInverseDepthOnly };
   enum class RobustLoss { kNone, kHuber, kCauchy };
@@ -13,10 +14,11 @@ struct WindowOptions {
 
   int max_frames = 11;
   Keyframes keyframes = Keyframes::kParallax;
-  double min_parallax_px = 10.0;
-  int min_common_tracks = 20;
+  double min_parallax_px = 30.0;
+  int min_common_tracks = 40;
   double max_keyframe_interval_s = 1.0;
 
+  Tracks tracks = Tracks::kLive;
   LandmarkParameters landmark_parameters = LandmarkParameters::kFull;
   LiveLandmarks live_landmarks = LiveLandmarks::kSplit;
   int frames_kept_from_prior = 2;
@@ -29,12 +31,13 @@ struct WindowOptions {
   double max_reprojection_sigmas = 5.0;
 
   int max_iterations = 8;
-  double function_tolerance = 1e-5;
+  double function_tolerance = 1e-4;
   TrustRegion trust_region = TrustRegion::kDogleg;
   LinearSolver linear_solver = LinearSolver::kDenseSchur;
   double reintegration_threshold = 1e-3;
   bool first_estimates = true;
 
+  double max_unaided_s = 1.0;
   double max_velocity_m_per_s = 50.0;
   double max_b_g_rad_per_s = 1.0;
   double max_b_a_m_per_s2 = 5.0;
@@ -61,6 +64,11 @@ struct WindowOptions {
              .unit = "s",
              .min = 0.01,
              .max = 10});
+    v.Choice("tracks", &tracks, {{"live", Tracks::kLive}, {"finished", Tracks::kFinished}},
+             {.doc = "live: a landmark is used as soon as it is triangulated. finished: only when "
+                     "its track has ended or spans the window, as the filter does; with "
+                     "keyframes: every_frame and frames_kept_from_prior: 0 both estimators then "
+                     "use the same pixels at the same time."});
     v.Choice("landmark_parameters", &landmark_parameters,
              {{"full", LandmarkParameters::kFull},
               {"inverse_depth_only", LandmarkParameters::kInverseDepthOnly}},
@@ -81,7 +89,9 @@ struct WindowOptions {
     v.Field("max_landmarks", &max_landmarks,
             {.doc = "Most landmarks in one problem, the longest observed first.", .min = 10});
     v.Field("min_landmarks", &min_landmarks,
-            {.doc = "Fewer landmarks seen in the newest frame: dead reckoning.", .min = 0});
+            {.doc = "Fewer tracks in a frame, or fewer landmarks in use for max_unaided_s: dead "
+                    "reckoning.",
+             .min = 0});
     v.Field("min_parallax_rad", &min_parallax_rad,
             {.doc = "A landmark enters the problem when two of its rays differ by this angle.",
              .unit = "rad",
@@ -119,6 +129,12 @@ struct WindowOptions {
              .min = 0});
     v.Field("first_estimates", &first_estimates,
             {.doc = "Priors and the covariance are linearized at the first estimates of frames."});
+    v.Field("max_unaided_s", &max_unaided_s,
+            {.doc = "Tracks without parallax (at the start, while hovering) may leave the window "
+                    "without landmarks for this long before it counts as dead reckoning; a gap in "
+                    "the IMU fails after it.",
+             .unit = "s",
+             .min = 0});
     v.Field("max_velocity_m_per_s", &max_velocity_m_per_s,
             {.doc = "Faster: failed.", .unit = "m/s", .min = 0.1});
     v.Field("max_b_g_rad_per_s", &max_b_g_rad_per_s,

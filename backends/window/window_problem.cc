@@ -168,6 +168,7 @@ SolveSummary WindowProblem::Solve() {
   result.final_cost = summary.final_cost;
   if (!result.usable) result.message = summary.message;
   VLOG(1) << "window solve: " << summary.BriefReport();
+  VLOG(3) << summary.FullReport();
   return result;
 }
 

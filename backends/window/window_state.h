@@ -55,6 +55,7 @@ struct WindowPoint {
 struct LandmarkObservation {
   int frame = 0;
   PixelObservation pixel;
+  Eigen::Vector3d bearing_B = Eigen::Vector3d::Zero();  ///< unit, by the calibration of its time
 };
 
 /// A track's point: (alpha, beta, rho) in C0 of the anchor, the first frame that it was seen in.
