@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cstdio>
 
 #include "backends/msckf/compression.h"
@@ -126,8 +126,9 @@ Answer Batch(const LinearProblem& problem, double* condition) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(A);
   const Eigen::MatrixXd R =
       qr.matrixQR().topRows(columns).triangularView<Eigen::Upper>().toDenseMatrix();
-  const Eigen::VectorXd singular = Eigen::BDCSVD<Eigen::MatrixXd>(R).singularValues();
-  *condition = singular[0] / singular[columns - 1];
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(R.transpose() * R,
+                                                             Eigen::EigenvaluesOnly);
+  *condition = std::sqrt(eigen.eigenvalues()[columns - 1] / eigen.eigenvalues()[0]);
   const Eigen::VectorXd x = qr.solve(y);
   const Eigen::MatrixXd R_inverse =
       R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(columns, columns));
@@ -139,7 +140,7 @@ Answer Batch(const LinearProblem& problem, double* condition) {
 // The filter: propagate, augment, and update with every landmark that has ended, null space and
 // compression included; the oldest clone leaves when the window is full.
 Answer Filter(const LinearProblem& problem) {
-  constexpr int kClone = FilterState::kCloneSize;
+  constexpr int kClone = 9;  // theta, p, v
   Eigen::MatrixXd P = Eigen::MatrixXd::Zero(kState + kClone * kWindow, kState + kClone * kWindow);
   P.topLeftCorner<15, 15>() = problem.P0;
   Eigen::VectorXd x = problem.mean0;
