@@ -49,7 +49,7 @@ FeatureGrid::FeatureGrid(const FrontendOptions& options, int max_tracks, cv::Siz
   columns_ = std::max(1, static_cast<int>(std::lround(image_size.width / cell_px)));
   rows_ = std::max(1, static_cast<int>(std::lround(image_size.height / cell_px)));
   const std::size_t count = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-  thresholds_.assign(count, std::clamp(20, options.fast_threshold_min, options.fast_threshold_max));
+  thresholds_.assign(count, std::max(20, options.fast_threshold_min));
   corners_of_cell_.resize(count);
 }
 

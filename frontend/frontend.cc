@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/geometry/so3.h"
+#include "common/support/input_error.h"
 #include "common/support/logging.h"
 #include "common/support/random.h"
 #include "frontend/anchor_patch.h"
@@ -121,6 +122,9 @@ Frontend::Impl::Impl(const FrontendOptions& options, int max_tracks, const RigCa
       equalized_(rig.cameras.size()) {
   for (std::size_t camera = 1; camera < rig.cameras.size(); ++camera) {
     stereo_.emplace_back(options, rig.cameras[0], rig.cameras[camera]);
+  }
+  if (options.fast_threshold_min > options.fast_threshold_max) {
+    throw InputError("", 0, "frontend.fast_threshold_min", "must not exceed fast_threshold_max");
   }
   if (options.clahe) clahe_ = cv::createCLAHE(options.clahe_clip_limit);
   for (std::size_t i = 0; i < patches_.size(); ++i) free_patches_.push_back(i);

@@ -11,8 +11,8 @@ struct FrontendOptions {
   int features_per_cell = 3;
   int fast_threshold_min = 7;
   int fast_threshold_max = 80;
-  double min_corner_quality = 30.0;
-  double min_distance_px = 18.0;
+  double min_corner_quality = 12.0;
+  double min_distance_px = 20.0;
   int border_px = 8;
   int subpixel_half_window_px = 4;
   bool clahe = false;
