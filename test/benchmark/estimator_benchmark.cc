@@ -1,5 +1,6 @@
-// The filter, one frame an iteration, tracks in memory: on simulated tracks (150 points a camera,
-// 1 px) and, where the recording is there, on OpenVINS's. One thread. Arguments: cameras, clones.
+// A filter frame and a window frame, one frame an iteration, tracks in memory: on simulated tracks
+// (150 points a camera, 1 px) and, where the recording is there, on OpenVINS's. One thread.
+// Arguments: cameras, frames in the window (the filter's clones).
 
 #include <benchmark/benchmark.h>
 
@@ -8,7 +9,7 @@
 #include <memory>
 #include <optional>
 
-#include "backends/msckf/msckf.h"
+#include "backends/factory.h"
 #include "common/dataset/recording.h"
 #include "experiments/simulation/simulator.h"
 
@@ -72,56 +73,52 @@ std::optional<Sequence> Recorded(int cameras) {
   return sequence;
 }
 
-void FilterFrame(benchmark::State& state, const Sequence& sequence) {
-  MsckfOptions options;
-  options.max_clones = static_cast<int>(state.range(1));
-  std::unique_ptr<Msckf> filter;
+void Frame(benchmark::State& state, const std::string& name, const Sequence& sequence) {
+  BackendOptions options;
+  options.msckf.max_clones = static_cast<int>(state.range(1));
+  options.window.max_frames = static_cast<int>(state.range(1));
+  std::unique_ptr<Estimator> estimator;
   std::size_t next = sequence.frames.size();
   double used = 0.0;
   for (auto _ : state) {
     if (next == sequence.frames.size()) {
       state.PauseTiming();
-      filter = std::make_unique<Msckf>(sequence.setup, options);
-      for (const ImuSample& sample : sequence.imu) filter->AddImu(sample);
-      filter->Initialize({sequence.start, StartCovariance()});
+      estimator = MakeEstimator(name, sequence.setup, options);
+      for (const ImuSample& sample : sequence.imu) estimator->AddImu(sample);
+      estimator->Initialize({sequence.start, StartCovariance()});
       next = 0;
       state.ResumeTiming();
     }
-    used += filter->ProcessFrame(sequence.frames[next++]).features.used;
+    used += estimator->ProcessFrame(sequence.frames[next++]).features.used;
   }
   state.counters["landmarks"] = benchmark::Counter(used, benchmark::Counter::kAvgIterations);
 }
 
-void SimulatedTracks(benchmark::State& state) {
-  FilterFrame(state, Simulated(static_cast<int>(state.range(0))));
+void SimulatedTracks(benchmark::State& state, const std::string& name) {
+  Frame(state, name, Simulated(static_cast<int>(state.range(0))));
 }
 
-void RecordedTracks(benchmark::State& state) {
+void RecordedTracks(benchmark::State& state, const std::string& name) {
   const std::optional<Sequence> sequence = Recorded(static_cast<int>(state.range(0)));
   if (!sequence) {
     state.SkipWithError("no recordings: set DUET_DATA to their folder");
     return;
   }
-  FilterFrame(state, *sequence);
+  Frame(state, name, *sequence);
 }
 
 // Whole recordings: frames differ.
-BENCHMARK(SimulatedTracks)
-    ->ArgNames({"cameras", "clones"})
-    ->Args({1, 11})
-    ->Args({1, 20})
-    ->Args({2, 11})
-    ->Args({2, 20})
-    ->Iterations(800)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(RecordedTracks)
-    ->ArgNames({"cameras", "clones"})
-    ->Args({1, 11})
-    ->Args({1, 20})
-    ->Args({2, 11})
-    ->Args({2, 20})
-    ->Iterations(800)
-    ->Unit(benchmark::kMillisecond);
+void Whole(benchmark::internal::Benchmark* benchmark) {
+  benchmark->ArgNames({"cameras", "frames"})->Iterations(400)->Unit(benchmark::kMillisecond);
+  for (const int cameras : {1, 2}) {
+    for (const int frames : {11, 20}) benchmark->Args({cameras, frames});
+  }
+}
+
+BENCHMARK_CAPTURE(SimulatedTracks, msckf, "msckf")->Apply(Whole);
+BENCHMARK_CAPTURE(SimulatedTracks, window, "window")->Apply(Whole);
+BENCHMARK_CAPTURE(RecordedTracks, msckf, "msckf")->Apply(Whole);
+BENCHMARK_CAPTURE(RecordedTracks, window, "window")->Apply(Whole);
 
 }  // namespace
 }  // namespace duet
