@@ -31,6 +31,19 @@ Mean MeanOf(const std::vector<ImuSample>& readings, Member member) {
   return result;
 }
 
+// R_GB with this direction up and B's x axis in the plane of G's x and z: yaw 0. Where x points up
+// or down, yaw means nothing, and B's y axis becomes G's.
+Eigen::Quaterniond WithoutYaw(const Eigen::Vector3d& up_B) {
+  constexpr double kVertical = 1e-6;
+  Eigen::Vector3d y_B = up_B.cross(Eigen::Vector3d::UnitX());
+  y_B = y_B.norm() > kVertical ? y_B.normalized() : Eigen::Vector3d::UnitY();
+  Eigen::Matrix3d R_GB;
+  R_GB.row(0) = y_B.cross(up_B).transpose();
+  R_GB.row(1) = y_B.transpose();
+  R_GB.row(2) = up_B.transpose();
+  return Eigen::Quaterniond(R_GB).normalized();
+}
+
 }  // namespace
 
 RestInitializer::RestInitializer(const EstimatorSetup& setup, const InitializationOptions& options)
@@ -67,10 +80,7 @@ InitializationResult RestInitializer::Update(const TrackFrameSet& frames, const 
   result.state.instant = instant;
   result.state.biases.b_a = force.mean - imu_calibration.T_a * a_B;
   result.state.biases.b_g = omega.mean - imu_calibration.T_s * a_B;
-  const Eigen::Quaterniond R_GB = Eigen::Quaterniond::FromTwoVectors(up_B, -setup_.g_G / g);
-  const Eigen::Matrix3d R = R_GB.toRotationMatrix();
-  const double yaw = std::atan2(R(1, 0), R(0, 0));
-  result.state.nav.R_GB = (ExpQuaternion(Eigen::Vector3d(0.0, 0.0, -yaw)) * R_GB).normalized();
+  result.state.nav.R_GB = WithoutYaw(up_B);
 
   // Tilt and the accelerometer's lateral bias are one unknown: theta = up x (R b_a) / g. Drawn from
   // the bias prior and mapped; what is known is the bias along gravity, to the noise of the mean.
