@@ -32,7 +32,8 @@ endif()
 # boundary to the distribution's Ceres, which is built for plain x86-64.
 add_compile_definitions(EIGEN_MAX_ALIGN_BYTES=16)
 if(DUET_SANITIZE)
-  add_compile_options(-fsanitize=${DUET_SANITIZE} -fno-omit-frame-pointer)
+  # Line tables alone: all that a report needs, and a tenth off the time to build.
+  add_compile_options(-fsanitize=${DUET_SANITIZE} -fno-omit-frame-pointer -g1)
   add_link_options(-fsanitize=${DUET_SANITIZE})
   if(DUET_SANITIZE MATCHES "undefined")
     add_compile_options(-fno-sanitize-recover=undefined)
