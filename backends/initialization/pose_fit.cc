@@ -143,7 +143,8 @@ InitializationResult InitializeFromPoses(const std::vector<StampedPose>& poses,
   if (!imu.Covers(instant, instant)) {
     return InitializationFailure{"the IMU does not cover the first frame's instant"};
   }
-  // A pose on the far side of the first frame is needed, or one so near that nothing is extrapolated.
+  // A pose on the far side of the first frame is needed, or one so near that nothing is
+  // extrapolated.
   const Timestamp reach = ToNanoseconds(kMaxExtrapolation_s);
   if (poses.empty() || instant < poses.front().timestamp - reach ||
       instant > poses.back().timestamp + reach) {
