@@ -57,7 +57,7 @@ Outcome RunEstimator(const std::string& name, const SimulatedRecording& recordin
   options.window.robust_loss = WindowOptions::RobustLoss::kNone;
   options.window.max_reprojection_sigmas = 0.0;
   options.window.max_landmarks = 1000;
-  options.window.min_parallax_rad = 0.003;
+  options.window.min_parallax_rad = 1e-6;  // no landmark leaves the problem for want of parallax
   options.window.max_iterations = 50;
   options.window.function_tolerance = 1e-16;
   const auto estimator = MakeEstimator(name, MakeSetup(recording, shared), options);
