@@ -16,6 +16,8 @@ namespace {
 /// before; the test only guards against a verdict that contradicts the filter grossly.
 constexpr double kStandstillGateProbability = 0.9999;
 constexpr int kStandstillRows = 6;
+/// Frames without a usable IMU interval for so long end the run, as in the window estimator.
+constexpr double kLongestSkipSeconds = 1.0;
 
 }  // namespace
 
@@ -59,22 +61,34 @@ bool Msckf::BeginFrame(const TrackFrameSet& frames, Timestamp instant) {
   output_.keyframe = true;
   output_.standstill = false;
   if (output_.status == EstimatorStatus::kFailed) return false;
-  if (!initialized_ || instant < start_) return false;
+  if (!initialized_ || instant < start_) {
+    (void)standstill_detector_.Update(frames, instant, imu_);  // rest may begin before the start
+    return false;
+  }
 
   const Timestamp previous = state_.inertial().instant;
   const bool is_first = state_.clones().empty() && instant == previous;
-  if (!imu_.empty() && imu_.Covers(previous, instant) && (instant > previous || is_first)) {
-    const double gap_s = imu_.LongestGap(previous, instant);
-    if (gap_s > setup_.shared.max_imu_gap_s) {
-      Fail("the IMU has a gap of " + std::to_string(gap_s) + " s");
-      return false;
+  if (instant <= previous && !is_first) {
+    Skip("the frame is not after the last one");
+  } else if (imu_.empty() || !imu_.Covers(previous, instant)) {
+    Skip("the IMU does not cover the frame's interval");
+  } else if (imu_.LongestGap(previous, instant) > setup_.shared.max_imu_gap_s) {
+    // Every later interval holds the gap too.
+    if (SecondsBetween(previous, instant) > kLongestSkipSeconds) {
+      Fail("the IMU has a gap that no frame reaches over");
+    } else {
+      Skip("the IMU has a gap in the frame's interval");
     }
+  } else {
     return true;
   }
+  return false;
+}
+
+void Msckf::Skip(const std::string& reason) {
   ++skipped_frames_;
   output_.status = EstimatorStatus::kDeadReckoning;
-  output_.reason = "the IMU does not cover the frame";
-  return false;
+  output_.reason = reason;
 }
 
 void Msckf::Propagate(Timestamp instant) {

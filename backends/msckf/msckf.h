@@ -41,6 +41,7 @@ class Msckf final : public Estimator {
   /// Where the frame's instant is processed: fills the output's head; false where the frame is left
   /// out (before the start, not covered by the IMU, after a failure).
   bool BeginFrame(const TrackFrameSet& frames, Timestamp instant);
+  void Skip(const std::string& reason);
   void Propagate(Timestamp instant);
   void Augment(const TrackFrameSet& frames);
   void UpdateStandstill(const TrackFrameSet& frames);
