@@ -8,9 +8,8 @@
 namespace duet {
 namespace {
 
-// Boxes of flat rectangles have no thickness; this much keeps a ray within the
-// rectangle's plane, or one that hits it at its border, from missing its box by
-// rounding.
+// Boxes of flat rectangles have no thickness; this much keeps a ray within the rectangle's plane,
+// or one that hits it at its border, from missing its box by rounding.
 constexpr double kBoxMargin_m = 1e-6;
 constexpr int kMaxDepth = 256;
 
@@ -19,10 +18,9 @@ double Area(const Eigen::AlignedBox3d& box) {
   return s.x() * s.y() + s.y() * s.z() + s.z() * s.x();
 }
 
-// The distance at which a ray enters the box, infinity where it misses it or
-// comes later than `limit`. A zero component's quotient may be NaN (origin in
-// the face's plane): the comparisons are ordered such that it then decides
-// nothing.
+// The distance at which a ray enters the box, infinity where it misses it or comes later than
+// `limit`. A zero component's quotient may be NaN (origin in the face's plane): the comparisons are
+// ordered such that it then decides nothing.
 double Enter(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin,
              const Eigen::Vector3d& inverse, double limit) {
   double near = 0.0;
@@ -43,8 +41,7 @@ int SurfaceTree::FindSibling(const Eigen::AlignedBox3d& box) const {
   while (nodes_[node].rectangle < 0) {
     const double area = Area(nodes_[node].box);
     const double merged = Area(nodes_[node].box.merged(box));
-    // A new parent here against going on into a child, whose ancestors all grow
-    // by the difference.
+    // A new parent here against going on into a child, whose ancestors all grow by the difference.
     const double here = 2.0 * merged;
     const double inherited = 2.0 * (merged - area);
     double best = here;
@@ -131,8 +128,7 @@ void SurfaceTree::Cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& dir
   int count = 0;
   Entry entry = {root_, Enter(nodes_[root_].box, origin, inverse, hit->distance_m)};
   while (true) {
-    // Strictly beyond: a surface at the very distance may have the lower
-    // number.
+    // Strictly beyond: a surface at the very distance may have the lower number.
     if (entry.distance_m <= hit->distance_m && entry.distance_m < 1e300) {
       const Node& node = nodes_[entry.node];
       if (node.rectangle >= 0) {

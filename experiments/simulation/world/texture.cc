@@ -9,9 +9,8 @@
 namespace duet {
 namespace {
 
-// Each texel the mean of the 2 x 2 below it, rounded to the nearest (halves to
-// even, so that the levels' mean does not creep upwards); beyond an odd edge
-// the edge texels go on.
+// Each texel the mean of the 2 x 2 below it, rounded to the nearest (halves to even, so that the
+// levels' mean does not creep upwards); beyond an odd edge the edge texels go on.
 Texture::Level Halved(const Texture::Level& fine) {
   Texture::Level coarse;
   coarse.width = (fine.width + 1) / 2;

@@ -16,16 +16,14 @@ struct Face {
   int u, v;   // axes of the box
   bool high;  // on the high side of the third axis
 };
-// u x v is the third axis for (0, 1), (1, 2) and (2, 0), and its negative for
-// the swapped pairs.
+// u x v is the third axis for (0, 1), (1, 2) and (2, 0), and its negative for the swapped pairs.
 constexpr std::array<Face, 6> kFaces = {
     {{1, 2, true}, {2, 1, false}, {2, 0, true}, {0, 2, false}, {0, 1, true}, {1, 0, false}}};
 
 double Fraction(double x) { return x - std::floor(x); }
 
-// Where the number-th face begins in a texture that is larger than it: spread
-// evenly (the R2 sequence, steps of the plastic number's powers), so that no
-// two boxes look alike.
+// Where the number-th face begins in a texture that is larger than it: spread evenly (the R2
+// sequence, steps of the plastic number's powers), so that no two boxes look alike.
 Eigen::Vector2d OriginInTexture(const Texture& texture, const Surface& face, std::size_t number) {
   constexpr double kStepU = 0.7548776662466927;
   constexpr double kStepV = 0.5698402909980532;

@@ -15,9 +15,9 @@
 
 namespace duet {
 
-/// A textured rectangle: points corner + u u_axis + v v_axis for 0 <= u <=
-/// width_m, 0 <= v <= height_m in the frame of its body; seen from the side
-/// that `u_axis x v_axis` points to, or from both.
+/// A textured rectangle: points corner + u u_axis + v v_axis for 0 <= u <= width_m, 0 <= v <=
+/// height_m in the frame of its body; seen from the side that `u_axis x v_axis` points to, or from
+/// both.
 struct Surface {
   Eigen::Vector3d corner = Eigen::Vector3d::Zero();  ///< m
   Eigen::Vector3d u_axis = Eigen::Vector3d::UnitX();
@@ -29,8 +29,7 @@ struct Surface {
   int texture = 0;                                             ///< index into World::textures()
   Eigen::Vector2d texture_origin_m = Eigen::Vector2d::Zero();  ///< of the corner in the texture
   double brightness = 1.0;  ///< multiplies the texture: its light
-  /// How much a corner detector finds on it, 0 (a bare wall) to 1; for
-  /// simulated tracks.
+  /// How much a corner detector finds on it, 0 (a bare wall) to 1; for simulated tracks.
   double corner_density = 1.0;
 };
 
@@ -41,9 +40,8 @@ struct WorldHit {
   Eigen::Vector2d uv_m = Eigen::Vector2d::Zero();  ///< place on the surface
 };
 
-/// A place made of textured rectangles, some of which move (walkers, cars):
-/// what the cameras of a simulation see, the same for rendered images and for
-/// simulated tracks. G: z up, m.
+/// A place made of textured rectangles, some of which move (walkers, cars): what the cameras of a
+/// simulation see, the same for rendered images and for simulated tracks. G: z up, m.
 class World {
  public:
   /// Where a body is at an instant of the simulation [s]; smooth.
@@ -52,16 +50,13 @@ class World {
   explicit World(std::string name) : name_(std::move(name)) {}
 
   int AddTexture(Texture texture);
-  /// Returns the body's number, 1 for the first. `T_G_body` is called from
-  /// several threads.
+  /// Returns the body's number, 1 for the first. `T_G_body` is called from several threads.
   int AddBody(Motion T_G_body);
-  /// CHECKs that the axes are unit vectors at a right angle and that the body
-  /// is there.
+  /// CHECKs that the axes are unit vectors at a right angle and that the body is there.
   int AddSurface(const Surface& surface);
-  /// A closed box of body `surface.body` with low corner `low` and high corner
-  /// `high` in the frame `pose` of it: six surfaces that look outwards, and a
-  /// solid that no camera may be in. Texture, brightness and density are
-  /// `surface`'s; each face begins elsewhere in the texture.
+  /// A closed box of body `surface.body` with low corner `low` and high corner `high` in the frame
+  /// `pose` of it: six surfaces that look outwards, and a solid that no camera may be in. Texture,
+  /// brightness and density are `surface`'s; each face begins elsewhere in the texture.
   void AddBox(const Pose& pose, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
               const Surface& surface);
   /// The box outside of which no camera may be.
@@ -76,19 +71,16 @@ class World {
   [[nodiscard]] const Eigen::Vector3d& low() const { return low_; }
   [[nodiscard]] const Eigen::Vector3d& high() const { return high_; }
 
-  /// The first surface along a ray (unit direction), nothing where there is
-  /// none.
+  /// The first surface along a ray (unit direction), nothing where there is none.
   [[nodiscard]] std::optional<WorldHit> Cast(const Eigen::Vector3d& origin_G,
                                              const Eigen::Vector3d& direction_G, double t_s) const;
-  /// The same with the bodies' poses at hand (BodyPoses): quicker for many rays
-  /// of one instant.
+  /// The same with the bodies' poses at hand (BodyPoses): quicker for many rays of one instant.
   [[nodiscard]] std::optional<WorldHit> Cast(const Eigen::Vector3d& origin_G,
                                              const Eigen::Vector3d& direction_G,
                                              std::span<const Pose> T_G_body) const;
   [[nodiscard]] Eigen::Vector3d PointInGlobal(int surface, const Eigen::Vector2d& uv_m,
                                               double t_s) const;
-  /// True where a point is within the bounds and at least `margin_m` outside of
-  /// every solid.
+  /// True where a point is within the bounds and at least `margin_m` outside of every solid.
   [[nodiscard]] bool IsFree(const Eigen::Vector3d& p_G, double margin_m, double t_s) const;
 
  private:
