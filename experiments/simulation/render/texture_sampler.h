@@ -1,0 +1,96 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "experiments/simulation/world/texture.h"
+
+namespace duet {
+
+/// Where a pixel falls in a texture and what it covers there to first order, in texels of level 0.
+struct TextureFootprint {
+  float u, v;
+  float u_by_x, v_by_x;  ///< per pixel to the right
+  float u_by_y, v_by_y;  ///< per pixel down
+};
+
+/// log2 by exponent and mantissa: continuous, exact at powers of two, at most 0.086 too small.
+[[nodiscard]] inline float CoarseLog2(float x) {
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  return static_cast<float>(bits) * 0x1.0p-23F - 127.0F;
+}
+
+/// Bilinear between the centres of a level's texels, edge texels going on; u, v in its texels.
+[[nodiscard]] inline float SampleLevel(const Texture::Level& level, float u, float v) {
+  const float x = std::clamp(u - 0.5F, 0.0F, static_cast<float>(level.width - 1));
+  const float y = std::clamp(v - 0.5F, 0.0F, static_cast<float>(level.height - 1));
+  const int x0 = static_cast<int>(x);
+  const int y0 = static_cast<int>(y);
+  const float fx = x - static_cast<float>(x0);
+  const float fy = y - static_cast<float>(y0);
+  const std::ptrdiff_t right = x0 + 1 < level.width ? 1 : 0;
+  const std::uint8_t* upper =
+      level.texels.data() + static_cast<std::ptrdiff_t>(y0) * level.width + x0;
+  const std::uint8_t* lower = upper + (y0 + 1 < level.height ? level.width : 0);
+  const float top = upper[0] + fx * static_cast<float>(upper[right] - upper[0]);
+  const float bottom = lower[0] + fx * static_cast<float>(lower[right] - lower[0]);
+  return top + fy * (bottom - top);
+}
+
+/// Trilinear: between the two levels whose texels are next to 2^lod texels of level 0.
+[[nodiscard]] inline float SampleTrilinear(const Texture& texture, float u, float v, float lod) {
+  const auto& levels = texture.levels();
+  const auto last = static_cast<float>(levels.size() - 1);
+  if (!(lod > 0.0F)) return SampleLevel(levels.front(), u, v);
+  if (lod >= last) lod = last;
+  const int fine = static_cast<int>(lod);
+  const float share = lod - static_cast<float>(fine);
+  // 2^-fine.
+  const float scale = std::bit_cast<float>(static_cast<std::uint32_t>(127 - fine) << 23);
+  const float value = SampleLevel(levels[fine], scale * u, scale * v);
+  if (share == 0.0F) return value;
+  const float half = 0.5F * scale;
+  return value + share * (SampleLevel(levels[fine + 1], half * u, half * v) - value);
+}
+
+/// The mean of the texture over a footprint. Its extent across decides about the mip level, up to
+/// `max_probes` samples side by side cover its extent along (as hardware's anisotropic filters do);
+/// beyond that the level goes up. Samples lie symmetric to (u, v), so that nothing is shifted.
+[[nodiscard]] inline float SampleFootprint(const Texture& texture, const TextureFootprint& f,
+                                           int max_probes) {
+  // The footprint is the ellipse J J' with J = (by_x, by_y): its axes by closed form.
+  const float uu = f.u_by_x * f.u_by_x + f.u_by_y * f.u_by_y;
+  const float vv = f.v_by_x * f.v_by_x + f.v_by_y * f.v_by_y;
+  const float uv = f.u_by_x * f.v_by_x + f.u_by_y * f.v_by_y;
+  const float half_sum = 0.5F * (uu + vv);
+  const float half_difference = 0.5F * (uu - vv);
+  const float root = std::sqrt(half_difference * half_difference + uv * uv);
+  const float major2 = half_sum + root;
+  const float minor2 = std::max(half_sum - root, 1e-12F);
+  // Up to a third longer than wide counts as round; a texel's own extent hides shorter ones.
+  const float covered2 = std::max(minor2, 1.0F);
+  if (max_probes <= 1 || major2 <= 1.75F * covered2) {
+    return SampleTrilinear(texture, f.u, f.v, 0.5F * CoarseLog2(major2));
+  }
+  const int probes =
+      std::min(max_probes, static_cast<int>(std::ceil(std::sqrt(major2 / covered2))));
+  const auto count = static_cast<float>(probes);
+  const float lod = 0.5F * CoarseLog2(std::max(minor2, major2 / (count * count)));
+  // The direction along: eigenvector of the greater eigenvalue, by the better conditioned row.
+  float along_u = half_difference >= 0.0F ? root + half_difference : uv;
+  float along_v = half_difference >= 0.0F ? uv : root - half_difference;
+  const float scale =
+      std::sqrt(major2 / std::max(along_u * along_u + along_v * along_v, 1e-30F)) / count;
+  along_u *= scale;
+  along_v *= scale;
+  float sum = 0.0F;
+  for (int i = 0; i < probes; ++i) {
+    const float place = static_cast<float>(i) - 0.5F * (count - 1.0F);
+    sum += SampleTrilinear(texture, f.u + place * along_u, f.v + place * along_v, lod);
+  }
+  return sum / count;
+}
+
+}  // namespace duet

@@ -1,0 +1,175 @@
+#include "experiments/simulation/render/tile_renderer.h"
+
+#include <algorithm>
+#include <array>
+
+#include "common/support/logging.h"
+#include "experiments/simulation/render/texture_sampler.h"
+
+namespace duet {
+namespace {
+
+constexpr int kNothing = -1;
+
+// Lattices (i / F_k, i F_(k-1) / F_k) of Fibonacci numbers F_k.
+struct Lattice {
+  int points;
+  int step;
+};
+constexpr std::array<Lattice, 6> kLattices = {
+    {{5, 3}, {8, 5}, {13, 8}, {21, 13}, {34, 21}, {55, 34}}};
+
+Lattice LatticeOf(int points) {
+  for (const Lattice& lattice : kLattices) {
+    if (lattice.points >= points) return lattice;
+  }
+  return kLattices.back();
+}
+
+}  // namespace
+
+RayBox RaysOf(const RayTable& rays, const Tile& tile) {
+  RayBox box;
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  // the greatest extent of one
+  for (int v = tile.v; v < tile.v + tile.height; ++v) {
+    for (int u = tile.u; u < tile.u + tile.width; ++u) {
+      if (!rays.valid(u, v)) continue;
+      const PixelRays pixel_rays = rays.At(u, v);
+      RayBox extent(pixel_rays.low_low);
+      extent.extend(pixel_rays.high_low);
+      extent.extend(pixel_rays.low_high);
+      extent.extend(pixel_rays.high_high);
+      box.extend(extent);
+      pixel = pixel.cwiseMax(extent.sizes());
+    }
+  }
+  if (!box.isEmpty()) {
+    box.min() -= pixel;
+    box.max() += pixel;
+  }
+  return box;
+}
+
+TileRenderer::TileRenderer(const World& world, const RayTable& rays, const RenderSampling& sampling,
+                           bool by_columns)
+    : rays_(rays), sampling_(sampling), by_columns_(by_columns) {
+  for (const Surface& surface : world.surfaces()) {
+    CHECK_GE(surface.texture, 0);
+    CHECK_LT(surface.texture, static_cast<int>(world.textures().size()))
+        << "world " << world.name() << " was made without textures";
+    const Texture& texture = world.textures()[static_cast<std::size_t>(surface.texture)];
+    const double per_m = 1.0 / texture.texel_m();
+    materials_.push_back({&texture, static_cast<float>(per_m),
+                          static_cast<float>(per_m * surface.texture_origin_m.x()),
+                          static_cast<float>(per_m * surface.texture_origin_m.y()),
+                          static_cast<float>(surface.brightness)});
+  }
+}
+
+int TileRenderer::NearestOf(const Sight& sight, const Eigen::Vector2f& ray) {
+  int nearest = kNothing;
+  float nearest_q = 0.0F;
+  for (const TileCandidate& tile_candidate : sight.tile.list) {
+    if (nearest_q > tile_candidate.max_inverse_depth) break;
+    const PlaneView& view = sight.views[tile_candidate.candidate];
+    const float q = view.InverseDepth(ray);
+    if (!(q > nearest_q) || !view.Within(ray, q)) continue;
+    nearest = tile_candidate.candidate;
+    nearest_q = q;
+  }
+  return nearest;
+}
+
+float TileRenderer::Shade(const Sight& sight, int candidate, const Eigen::Vector2f& ray,
+                          const Eigen::Vector2f& by_u, const Eigen::Vector2f& by_v) const {
+  const PlaneView& view = sight.views[candidate];
+  const int surface = sight.band.candidates()[static_cast<std::size_t>(candidate)].surface;
+  const Material& material = materials_[static_cast<std::size_t>(surface)];
+  const float q = view.InverseDepth(ray);
+  if (!(q > 0.0F)) return 0.0F;
+  // Place and, by the quotient rule, its change over the pixel.
+  const float scale = material.texels_per_m / q;
+  const float u_m = PlaneView::Dot(view.a, ray) / q;
+  const float v_m = PlaneView::Dot(view.b, ray) / q;
+  const Eigen::Vector2f u_slope = view.a.head<2>() - u_m * view.w.head<2>();
+  const Eigen::Vector2f v_slope = view.b.head<2>() - v_m * view.w.head<2>();
+  const TextureFootprint footprint = {material.texels_per_m * u_m + material.origin_u,
+                                      material.texels_per_m * v_m + material.origin_v,
+                                      scale * u_slope.dot(by_u),
+                                      scale * v_slope.dot(by_u),
+                                      scale * u_slope.dot(by_v),
+                                      scale * v_slope.dot(by_v)};
+  return material.brightness * SampleFootprint(*material.texture, footprint, sampling_.max_probes);
+}
+
+float TileRenderer::ShadeEdge(const Sight& sight, const PixelRays& rays, int samples,
+                              double* empty) const {
+  const Lattice lattice = LatticeOf(samples);
+  // Several samples share the pixel: each stands for half its extent.
+  const Eigen::Vector2f by_u = 0.5F * rays.ByU();
+  const Eigen::Vector2f by_v = 0.5F * rays.ByV();
+  const float step = 1.0F / static_cast<float>(lattice.points);
+  float sum = 0.0F;
+  int nothing = 0;
+  int row = 0;
+  for (int i = 0; i < lattice.points; ++i) {
+    const Eigen::Vector2f ray = rays.At((static_cast<float>(i) + 0.5F) * step - 0.5F,
+                                        (static_cast<float>(row) + 0.5F) * step - 0.5F);
+    row = (row + lattice.step) % lattice.points;
+    const int nearest = NearestOf(sight, ray);
+    if (nearest == kNothing) {
+      ++nothing;
+    } else {
+      sum += Shade(sight, nearest, ray, by_u, by_v);
+    }
+  }
+  *empty += static_cast<double>(nothing) / lattice.points;
+  return sum * step;
+}
+
+void TileRenderer::Render(const BandGeometry& band, int instants, const Tile& tile,
+                          TileCandidates* scratch, float* light, PixelCounts* counts) const {
+  const RayBox view = RaysOf(rays_, tile);
+  if (!view.isEmpty()) {
+    FindTileCandidates(band, view, scratch);
+  } else {
+    scratch->list.clear();
+  }
+  const int edge_samples = (sampling_.edge_samples + instants - 1) / instants;
+  const float share = 1.0F / static_cast<float>(instants);
+  const int only = scratch->filled ? scratch->list.front().candidate : kNothing;
+  const bool trivial = scratch->filled || scratch->list.empty();
+  for (int v = tile.v; v < tile.v + tile.height; ++v) {
+    for (int u = tile.u; u < tile.u + tile.width; ++u) {
+      float* out = light + static_cast<std::ptrdiff_t>(v) * rays_.width_px() + u;
+      *out = 0.0F;
+      if (!rays_.valid(u, v)) continue;
+      const PixelRays rays = rays_.At(u, v);
+      double empty = 0.0;
+      float sum = 0.0F;
+      for (int instant = 0; instant < instants; ++instant) {
+        const Sight sight = {band, *scratch, band.Views(by_columns_ ? u : v, instant)};
+        int seen = only;
+        bool edge = false;
+        if (!trivial) {
+          seen = NearestOf(sight, rays.low_low);
+          edge = NearestOf(sight, rays.high_low) != seen ||
+                 NearestOf(sight, rays.low_high) != seen ||
+                 NearestOf(sight, rays.high_high) != seen;
+        }
+        if (edge) {
+          sum += ShadeEdge(sight, rays, edge_samples, &empty);
+        } else if (seen != kNothing) {
+          sum += Shade(sight, seen, rays.center, rays.ByU(), rays.ByV());
+        } else {
+          empty += 1.0;
+        }
+      }
+      *out = share * sum;
+      counts->empty += empty / instants;
+      counts->seen += 1.0 - empty / instants;
+    }
+  }
+}
+
+}  // namespace duet

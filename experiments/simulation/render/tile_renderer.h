@@ -1,0 +1,68 @@
+#pragma once
+
+#include <vector>
+
+#include "experiments/simulation/render/band_geometry.h"
+#include "experiments/simulation/render/ray_table.h"
+#include "experiments/simulation/render/render_options.h"
+
+namespace duet {
+
+/// A rectangle of pixels.
+struct Tile {
+  int u = 0, v = 0;  ///< first pixel
+  int width = 0, height = 0;
+};
+
+/// The box of a tile's rays, widened by a pixel; empty where no pixel of it is valid.
+[[nodiscard]] RayBox RaysOf(const RayTable& rays, const Tile& tile);
+
+/// How much of an image shows something.
+struct PixelCounts {
+  double seen = 0.0;   ///< pixels that see a surface
+  double empty = 0.0;  ///< pixels that see nothing, though they have a ray
+};
+
+/// Samples the world's light pixel by pixel.
+///
+/// A pixel is looked at through its four corners. Where all see the same surface, its centre is
+/// looked up in the surface's texture; where they differ, the pixel is sampled at the points of a
+/// Fibonacci lattice, whose projections on any axis are spread evenly: a border lies where it is to
+/// 1 / samples px. Surfaces narrower than a pixel may be missed between corners.
+class TileRenderer {
+ public:
+  TileRenderer(const World& world, const RayTable& rays, const RenderSampling& sampling,
+               bool by_columns);
+
+  /// The light (grey levels at gain 1) of the tile's pixels, the mean over the instants, into
+  /// `light`, an image by rows of the camera's size. Pixels without a ray get 0.
+  void Render(const BandGeometry& band, int instants, const Tile& tile, TileCandidates* scratch,
+              float* light, PixelCounts* counts) const;
+
+ private:
+  // How a surface shines.
+  struct Material {
+    const Texture* texture;
+    float texels_per_m;
+    float origin_u, origin_v;  // texels
+    float brightness;
+  };
+
+  struct Sight {  // of the pixel that is rendered
+    const BandGeometry& band;
+    const TileCandidates& tile;
+    const PlaneView* views;
+  };
+  static int NearestOf(const Sight& sight, const Eigen::Vector2f& ray);
+  [[nodiscard]] float Shade(const Sight& sight, int candidate, const Eigen::Vector2f& ray,
+                            const Eigen::Vector2f& by_u, const Eigen::Vector2f& by_v) const;
+  [[nodiscard]] float ShadeEdge(const Sight& sight, const PixelRays& rays, int samples,
+                                double* empty) const;
+
+  const RayTable& rays_;
+  RenderSampling sampling_;
+  bool by_columns_;
+  std::vector<Material> materials_;  // one a surface
+};
+
+}  // namespace duet
