@@ -22,21 +22,28 @@ struct TextureFootprint {
   return static_cast<float>(bits) * 0x1.0p-23F - 127.0F;
 }
 
-/// Bilinear between the centres of a level's texels, edge texels going on; u, v in its texels.
+/// Bilinear between the centres of a level's texels, edge texels going on; u, v in its texels,
+/// weights in steps of 2^-12.
 [[nodiscard]] inline float SampleLevel(const Texture::Level& level, float u, float v) {
+  constexpr int kBits = 12;  // 8 bits of grey and two weights of 12 just fit 32 bits
+  constexpr std::uint32_t kOne = 1U << kBits;
   const float x = std::clamp(u - 0.5F, 0.0F, static_cast<float>(level.width - 1));
   const float y = std::clamp(v - 0.5F, 0.0F, static_cast<float>(level.height - 1));
-  const int x0 = static_cast<int>(x);
-  const int y0 = static_cast<int>(y);
-  const float fx = x - static_cast<float>(x0);
-  const float fy = y - static_cast<float>(y0);
+  const auto x_fixed = static_cast<std::int32_t>(static_cast<float>(kOne) * x);
+  const auto y_fixed = static_cast<std::int32_t>(static_cast<float>(kOne) * y);
+  const std::int32_t x0 = x_fixed >> kBits;
+  const std::int32_t y0 = y_fixed >> kBits;
+  const std::uint32_t fx = static_cast<std::uint32_t>(x_fixed) & (kOne - 1);
+  const std::uint32_t fy = static_cast<std::uint32_t>(y_fixed) & (kOne - 1);
   const std::ptrdiff_t right = x0 + 1 < level.width ? 1 : 0;
   const std::uint8_t* upper =
       level.texels.data() + static_cast<std::ptrdiff_t>(y0) * level.width + x0;
   const std::uint8_t* lower = upper + (y0 + 1 < level.height ? level.width : 0);
-  const float top = upper[0] + fx * static_cast<float>(upper[right] - upper[0]);
-  const float bottom = lower[0] + fx * static_cast<float>(lower[right] - lower[0]);
-  return top + fy * (bottom - top);
+  const std::uint32_t top = upper[0] * (kOne - fx) + upper[right] * fx;
+  const std::uint32_t bottom = lower[0] * (kOne - fx) + lower[right] * fx;
+  const std::uint32_t sum = top * (kOne - fy) + bottom * fy;
+  // Half of it fits a signed integer, whose conversion is the fast one.
+  return static_cast<float>(static_cast<std::int32_t>(sum >> 1)) * 0x1.0p-23F;
 }
 
 /// Trilinear: between the two levels whose texels are next to 2^lod texels of level 0.
@@ -69,9 +76,11 @@ struct TextureFootprint {
   const float root = std::sqrt(half_difference * half_difference + uv * uv);
   const float major2 = half_sum + root;
   const float minor2 = std::max(half_sum - root, 1e-12F);
-  // Up to a third longer than wide counts as round; a texel's own extent hides shorter ones.
+  // Up to a third longer than wide counts as round (up to twice, where there are but two probes); a
+  // texel's own extent hides shorter ones.
   const float covered2 = std::max(minor2, 1.0F);
-  if (max_probes <= 1 || major2 <= 1.75F * covered2) {
+  const float round2 = max_probes <= 2 ? 4.0F : 1.75F;
+  if (max_probes <= 1 || major2 <= round2 * covered2) {
     return SampleTrilinear(texture, f.u, f.v, 0.5F * CoarseLog2(major2));
   }
   const int probes =

@@ -88,9 +88,10 @@ float TileRenderer::Shade(const Sight& sight, int candidate, const Eigen::Vector
   const float q = view.InverseDepth(ray);
   if (!(q > 0.0F)) return 0.0F;
   // Place and, by the quotient rule, its change over the pixel.
-  const float scale = material.texels_per_m / q;
-  const float u_m = PlaneView::Dot(view.a, ray) / q;
-  const float v_m = PlaneView::Dot(view.b, ray) / q;
+  const float depth = 1.0F / q;
+  const float scale = material.texels_per_m * depth;
+  const float u_m = PlaneView::Dot(view.a, ray) * depth;
+  const float v_m = PlaneView::Dot(view.b, ray) * depth;
   const Eigen::Vector2f u_slope = view.a.head<2>() - u_m * view.w.head<2>();
   const Eigen::Vector2f v_slope = view.b.head<2>() - v_m * view.w.head<2>();
   const TextureFootprint footprint = {material.texels_per_m * u_m + material.origin_u,

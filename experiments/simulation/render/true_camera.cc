@@ -73,4 +73,17 @@ std::optional<Eigen::Vector2d> TrueCamera::PixelOf(int camera, Timestamp stamp,
   return std::nullopt;
 }
 
+bool TrueCamera::IsVisible(int camera, Timestamp stamp, const SurfacePoint& point,
+                           const Eigen::Vector2d& uv) const {
+  // Less than this apart it is the point itself, or one on a surface that meets its own.
+  constexpr double kSame = 1e-4;
+  const auto seen = PointAt(camera, stamp, uv);
+  if (!seen) return false;
+  if (seen->surface == point.surface) return true;
+  const double t_s = TimeOf(camera, stamp, uv);
+  const Pose T_CG = PoseAt(camera, t_s);
+  const double distance_m = (T_CG * world_->PointInGlobal(point.surface, point.uv_m, t_s)).norm();
+  return seen->distance_m > (1.0 - kSame) * distance_m;
+}
+
 }  // namespace duet

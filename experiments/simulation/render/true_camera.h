@@ -62,6 +62,10 @@ class TrueCamera {
   [[nodiscard]] std::optional<Eigen::Vector2d> PixelOf(int camera, Timestamp stamp,
                                                        const SurfacePoint& point) const;
 
+  /// True where nothing stands before a point whose pixel (PixelOf) is `uv`.
+  [[nodiscard]] bool IsVisible(int camera, Timestamp stamp, const SurfacePoint& point,
+                               const Eigen::Vector2d& uv) const;
+
  private:
   RigCalibration rig_;
   std::shared_ptr<const World> world_;
