@@ -16,7 +16,7 @@ constexpr int kDegree = 5;
 constexpr int kOrder = kDegree + 1;
 constexpr double kMaxGapKnots = 4.0;
 
-using Coefficients = std::array<std::array<double, kOrder>, kOrder>;
+using BasisCoefficients = std::array<std::array<double, kOrder>, kOrder>;
 
 constexpr double Binomial(int n, int k) {
   double result = 1.0;
@@ -28,8 +28,8 @@ constexpr double Power(double x, int n) { return n == 0 ? 1.0 : x * Power(x, n -
 
 // Row j: lambda_j(u) = sum_n c[j][n] u^n, the sum of the uniform B-spline's basis functions j ... 5
 // (Qin, "General matrix representations for B-splines", 2000).
-constexpr Coefficients CumulativeBasis() {
-  Coefficients basis{};
+constexpr BasisCoefficients CumulativeBasis() {
+  BasisCoefficients basis{};
   for (int s = 0; s < kOrder; ++s) {
     for (int n = 0; n < kOrder; ++n) {
       double sum = 0.0;
@@ -44,7 +44,7 @@ constexpr Coefficients CumulativeBasis() {
   }
   return basis;
 }
-constexpr Coefficients kCumulative = CumulativeBasis();
+constexpr BasisCoefficients kCumulative = CumulativeBasis();
 
 struct Blend {
   std::array<double, kOrder> value, first, second;  // of lambda_j, by u

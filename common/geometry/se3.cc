@@ -7,7 +7,7 @@ namespace {
 
 // Below this squared angle the two higher coefficients are summed as series; above it their closed
 // forms lose at most two digits.
-constexpr double kSeriesBelow = 1.0;
+constexpr double kSquareSeriesBelow = 1.0;
 
 // sum over k >= 2 of (-1)^k weight(k) x2^(k-2) / (2k + extra)!, to rounding for x2 < 1.
 template <typename Weight>
@@ -26,20 +26,20 @@ double FactorialSeries(double x2, int extra, Weight weight) {
 
 // (x^2 + 2 cos x - 2) / (2 x^4) = 1/24 - x^2/720 + ...
 double QuarticCoefficient(double x2) {
-  if (x2 < kSeriesBelow) return FactorialSeries(x2, 0, [](int) { return 1.0; });
+  if (x2 < kSquareSeriesBelow) return FactorialSeries(x2, 0, [](int) { return 1.0; });
   return (x2 + 2.0 * std::cos(std::sqrt(x2)) - 2.0) / (2.0 * x2 * x2);
 }
 
 // (2 x - 3 sin x + x cos x) / (2 x^5) = 1/120 - x^2/2520 + ...
 double QuinticCoefficient(double x2) {
-  if (x2 < kSeriesBelow) return FactorialSeries(x2, 1, [](int k) { return k - 1.0; });
+  if (x2 < kSquareSeriesBelow) return FactorialSeries(x2, 1, [](int k) { return k - 1.0; });
   const double x = std::sqrt(x2);
   return (2.0 * x - 3.0 * std::sin(x) + x * std::cos(x)) / (2.0 * x2 * x2 * x);
 }
 
 // (x - sin x) / x^3 = 1/6 - x^2/120 + ...
 double CubicCoefficient(double x2) {
-  if (x2 < kSeriesBelow) return 1.0 / 6.0 - x2 * FactorialSeries(x2, 1, [](int) { return 1.0; });
+  if (x2 < kSquareSeriesBelow) return 1.0 / 6.0 - x2 * FactorialSeries(x2, 1, [](int) { return 1.0; });
   const double x = std::sqrt(x2);
   return (x - std::sin(x)) / (x2 * x);
 }

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <map>
 
+#include "common/geometry/angle.h"
 #include "experiments/check/stamp_checks.h"
 
 namespace duet {
 namespace {
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 void CheckCamera(const CameraCalibration& camera, const std::string& name, Findings* findings) {
   const CameraModel& model = camera.model;
@@ -18,7 +18,7 @@ void CheckCamera(const CameraCalibration& camera, const std::string& name, Findi
   const double fy = p[1];
   const double width = model.width_px();
   const double height = model.height_px();
-  const double view_deg = 2.0 * std::atan2(0.5 * width, fx) * kDegrees;
+  const double view_deg = 2.0 * std::atan2(0.5 * width, fx) * kDegreesPerRadian;
   findings->push_back({Severity::kInfo,
                        name + ".calibration",
                        Sentence("%s: %d x %d px, f = %.1f, %.1f px (%.0f deg across without "
@@ -82,7 +82,7 @@ void CheckCamera(const CameraCalibration& camera, const std::string& name, Findi
 void CheckPair(const CameraCalibration& a, const CameraCalibration& b, Findings* findings) {
   const Eigen::Quaterniond R_BA = b.R_CB * a.R_CB.conjugate();
   const Eigen::Vector3d baseline = b.p_CB - R_BA * a.p_CB;  // origin of a in b
-  const double angle_deg = R_BA.angularDistance(Eigen::Quaterniond::Identity()) * kDegrees;
+  const double angle_deg = R_BA.angularDistance(Eigen::Quaterniond::Identity()) * kDegreesPerRadian;
   findings->push_back({Severity::kInfo,
                        "cameras.baseline",
                        Sentence("baseline %.4f m, the second camera turned by %.2f deg against the "

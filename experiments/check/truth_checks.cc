@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/angle.h"
 #include "common/geometry/pose_jumps.h"
 #include "common/imu/imu_buffer.h"
 #include "common/imu/imu_delta.h"
@@ -12,7 +13,6 @@
 namespace duet {
 namespace {
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 // What the IMU measured between neighbouring poses, where it covers them without a gap.
 std::vector<std::optional<RelativeMotion>> MotionBetween(const Recording& recording) {
@@ -60,7 +60,7 @@ void CheckJumps(const Recording& recording, Timestamp origin, Findings* findings
   std::string list;
   for (std::size_t i = 0; i < std::min<std::size_t>(5, ordered.size()); ++i) {
     list += Sentence("%s%.1f mm and %.2f deg at %s", i == 0 ? "" : ", ",
-                     1e3 * ordered[i].displacement.norm(), kDegrees * ordered[i].rotation.norm(),
+                     1e3 * ordered[i].displacement.norm(), kDegreesPerRadian * ordered[i].rotation.norm(),
                      SinceOrigin(ordered[i].after, origin).c_str());
   }
   findings->push_back(
@@ -132,7 +132,7 @@ double CheckGyro(const Recording& recording, Findings* findings) {
                          "gyroscope and truth can't be compared: the rig hardly turns", ""});
     return 0.0;
   }
-  const double angle_deg = Log(fit->R_IB).norm() * kDegrees;
+  const double angle_deg = Log(fit->R_IB).norm() * kDegreesPerRadian;
   const std::vector<Measurement> measured = {{"time_shift_s", fit->time_shift_s},
                                              {"time_sigma_s", fit->time_sigma_s},
                                              {"rotation_deg", angle_deg},
@@ -158,7 +158,7 @@ double CheckGyro(const Recording& recording, Findings* findings) {
          measured});
   }
   if (angle_deg > 1.0) {
-    const Eigen::Vector3d v = Log(fit->R_IB) * kDegrees;
+    const Eigen::Vector3d v = Log(fit->R_IB) * kDegreesPerRadian;
     findings->push_back(
         {Severity::kWarning, "gyro_truth.rotation",
          Sentence("the truth's body frame is turned against the gyroscope's by %.2f deg (rotation "
@@ -176,9 +176,9 @@ void CheckGravity(const Recording& recording, double time_shift_s, Findings* fin
   if (!fit) return;
   const double size = fit->minus_g_G.norm();
   const Eigen::Vector3d up = fit->minus_g_G.normalized();
-  const double tilt_deg = std::atan2(up.head<2>().norm(), up.z()) * kDegrees;
+  const double tilt_deg = std::atan2(up.head<2>().norm(), up.z()) * kDegreesPerRadian;
   const double sigma = fit->sigma.maxCoeff();
-  const double sigma_deg = sigma / size * kDegrees;
+  const double sigma_deg = sigma / size * kDegreesPerRadian;
   const std::vector<Measurement> measured = {{"gravity_m_per_s2", size},
                                              {"tilt_deg", tilt_deg},
                                              {"sigma_m_per_s2", sigma},

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "common/geometry/angle.h"
 #include "common/geometry/so3.h"
 #include "evaluation/errors.h"
 #include "evaluation/statistics.h"
@@ -15,7 +16,6 @@
 namespace duet {
 namespace {
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 // Apart from the recording's own random sequences (simulator.cc).
 constexpr std::uint64_t kStartStream = 11;
 
@@ -61,7 +61,7 @@ class RunStatistics {
     const auto rms = [&](int block) {
       return std::sqrt(squares_.segment<3>(3 * block).sum() / count);
     };
-    run_.orientation_rms_deg = rms(0) * kDegrees;
+    run_.orientation_rms_deg = rms(0) * kDegreesPerRadian;
     run_.position_rms_m = rms(1);
     run_.velocity_rms_m_per_s = rms(2);
     run_.b_g_rms_rad_per_s = rms(3);

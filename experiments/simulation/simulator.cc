@@ -8,7 +8,9 @@
 
 #include "common/geometry/so3.h"
 #include "common/support/input_error.h"
+#include "experiments/simulation/scene.h"
 #include "experiments/simulation/track_simulator.h"
+#include "experiments/simulation/world/world_library.h"
 
 namespace duet {
 namespace {
@@ -17,6 +19,7 @@ namespace {
 constexpr Timestamp kEpoch = 1'400'000'000'000'000'000;
 // The IMU before the first and after the last frame: room for |t_d|, t_r and a sample.
 constexpr double kImuMargin_s = 0.2;
+constexpr const char* kBoxWorld = "box";
 // Separate random sequences, so that e.g. another IMU rate leaves the tracks as they are.
 enum RandomStream : std::uint64_t { kImuStream = 1, kTrackStream = 2, kToldStream = 3 };
 
@@ -87,7 +90,7 @@ RigCalibration DrawToldRig(const SimulationOptions& options, const RigCalibratio
 }
 
 SimulatedRecording SimulateIn(const SimulationOptions& options,
-                              std::shared_ptr<const Trajectory> trajectory, const Room& room) {
+                              std::shared_ptr<const Trajectory> trajectory, const Scene& scene) {
   if (options.cameras < 1 || options.cameras > 2) {
     throw InputError("", 0, "cameras", "expected 1 or 2");
   }
@@ -107,7 +110,7 @@ SimulatedRecording SimulateIn(const SimulationOptions& options,
   recording.told_rig = DrawToldRig(options, recording.true_rig);
   SimulateImu(options, &recording);
 
-  TrackSimulator tracks(options, recording.true_rig, *recording.trajectory, recording.start, room,
+  TrackSimulator tracks(options, recording.true_rig, *recording.trajectory, recording.start, scene,
                         Random(static_cast<std::uint64_t>(options.seed), kTrackStream));
   const double frames_s = recording.trajectory->duration_s() - 2.0 * kImuMargin_s;
   // Frames fall on the IMU's stamps where the rates divide, as EuRoC's do.
@@ -178,21 +181,30 @@ RigCalibration EurocLikeRig(int cameras) {
 SimulatedRecording Simulate(const SimulationOptions& options) {
   auto trajectory =
       MakeTrajectory(options.trajectory, options.duration_s + 2.0 * kImuMargin_s, options.rest_s);
-  const Room room{.low = {-4.5, -4.0, 0.0}, .high = {4.5, 4.0, 3.2}};
-  return SimulateIn(options, std::move(trajectory), room);
+  if (options.world != kBoxWorld) return Simulate(options, std::move(trajectory));
+  const BoxScene scene({-4.5, -4.0, 0.0}, {4.5, 4.0, 3.2}, options.clutter_share);
+  return SimulateIn(options, std::move(trajectory), scene);
 }
 
 SimulatedRecording Simulate(const SimulationOptions& options,
                             std::shared_ptr<const Trajectory> trajectory) {
-  Room room{.low = trajectory->At(0.0).T_GB.p, .high = trajectory->At(0.0).T_GB.p};
+  if (options.world != kBoxWorld) {
+    const WorldScene scene(MakeWorld(
+        options.world, {.seed = static_cast<std::uint64_t>(options.seed),
+                        .textures = false,
+                        .moving_bodies = options.moving_bodies}));
+    return SimulateIn(options, std::move(trajectory), scene);
+  }
+  Eigen::Vector3d low = trajectory->At(0.0).T_GB.p;
+  Eigen::Vector3d high = low;
   for (double t_s = 0.0; t_s <= trajectory->duration_s(); t_s += 0.1) {
     const Eigen::Vector3d p_GB = trajectory->At(t_s).T_GB.p;
-    room.low = room.low.cwiseMin(p_GB);
-    room.high = room.high.cwiseMax(p_GB);
+    low = low.cwiseMin(p_GB);
+    high = high.cwiseMax(p_GB);
   }
-  room.low.array() -= 2.0;
-  room.high.array() += 2.0;
-  return SimulateIn(options, std::move(trajectory), room);
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(2.0);
+  const BoxScene scene(low - margin, high + margin, options.clutter_share);
+  return SimulateIn(options, std::move(trajectory), scene);
 }
 
 InitialCondition DrawInitialCondition(const InertialState& truth, const Matrix15d& covariance,

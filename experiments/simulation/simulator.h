@@ -37,8 +37,12 @@ struct SimulationOptions {
   int cameras = 1;
   double t_d_s = 0.0;
   double t_r_s = 0.0;
+  std::string world = "box";
+  bool moving_bodies = false;
   int max_tracks = 120;
   double mean_track_frames = 60.0;
+  double weak_share = 0.0;
+  double weak_track_frames = 4.0;
   double pixel_noise_px = 1.0;
   double outlier_share = 0.0;
   double mismatch_share = 0.0;
@@ -79,7 +83,7 @@ struct SimulatedRecording {
 
 /// Simulates a recording: the IMU by the full error model (DESIGN.md section 3: T matrices, biases
 /// that walk at the IMU's rate, white noise of density * sqrt(rate) a sample), and tracks of points
-/// on the walls of a room and between them. A camera's row k sees the world at
+/// of its world. A camera's row k sees the world at
 /// stamp + t_d + k t_r / N. Pixels are projected from the trajectory itself, not through the
 /// estimators' measurement model, so that they test it. Tracks are spread evenly over the image,
 /// end at random (mean_track_frames) or with their point out of view, and have ids never reused;
@@ -147,10 +151,20 @@ void SimulationOptions::Visit(Visitor& v) {
            .unit = "s",
            .min = -0.1,
            .max = 0.1});
+  v.Field("world", &world,
+          {.doc = "Where the tracks' points are: on the surfaces of room, bare_room, hall or street, "
+                  "with occlusion, or (box) on the walls of a box and between them, without."});
+  v.Field("moving_bodies", &moving_bodies, {.doc = "Walkers and cars in the world."});
   v.Field("max_tracks", &max_tracks,
           {.doc = "Tracks in each frame of the first camera.", .min = 1, .max = 5000});
   v.Field("mean_track_frames", &mean_track_frames,
           {.doc = "Mean length of a track whose point stays in view.", .unit = "frames", .min = 2});
+  v.Field("weak_share", &weak_share,
+          {.doc = "Share of tracks that are on weak corners and end early, as a real tracker's do.",
+           .min = 0,
+           .max = 1});
+  v.Field("weak_track_frames", &weak_track_frames,
+          {.doc = "Mean length of those.", .unit = "frames", .min = 1});
   v.Field("pixel_noise_px", &pixel_noise_px,
           {.doc = "Noise of a pixel, per axis.", .unit = "px", .min = 0, .max = 50});
   v.Field("outlier_share", &outlier_share,
@@ -163,7 +177,7 @@ void SimulationOptions::Visit(Visitor& v) {
       "outlier_px", &outlier_px,
       {.doc = "Largest throw of an outlier or a mismatch.", .unit = "px", .min = 5, .max = 500});
   v.Field("clutter_share", &clutter_share,
-          {.doc = "Share of points that stand in the room, not on its walls.", .min = 0, .max = 1});
+          {.doc = "Share of points that stand in the box, not on its walls (world box).", .min = 0, .max = 1});
 }
 
 }  // namespace duet

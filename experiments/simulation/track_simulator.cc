@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "experiments/simulation/simulator.h"
 
@@ -12,19 +13,6 @@ namespace {
 
 constexpr int kGridColumns = 10;
 constexpr int kGridRows = 6;
-constexpr double kPi = 3.14159265358979323846;
-
-// The distance along `direction` from `origin` inside the room to its walls.
-double DistanceToWall(const Room& room, const Eigen::Vector3d& origin,
-                      const Eigen::Vector3d& direction) {
-  double distance = 1e9;
-  for (int i = 0; i < 3; ++i) {
-    if (direction[i] == 0.0) continue;
-    const double wall = direction[i] > 0.0 ? room.high[i] : room.low[i];
-    distance = std::min(distance, (wall - origin[i]) / direction[i]);
-  }
-  return distance;
-}
 
 // The largest tan of the angle off the axis that the image shows. Beyond it a distortion polynomial
 // may fold points back into the image.
@@ -42,13 +30,13 @@ double LargestRadius(const CameraModel& model) {
 }  // namespace
 
 TrackSimulator::TrackSimulator(const SimulationOptions& options, const RigCalibration& rig,
-                               const Trajectory& trajectory, Timestamp start, const Room& room,
-                               Random random)
+                               const Trajectory& trajectory, Timestamp start,
+                               const Scene& scene, Random random)
     : options_(options),
       rig_(rig),
       trajectory_(trajectory),
       start_(start),
-      room_(room),
+      scene_(scene),
       random_(random),
       cell_counts_(kGridColumns * kGridRows) {
   for (const CameraCalibration& camera : rig_.cameras) {
@@ -56,17 +44,20 @@ TrackSimulator::TrackSimulator(const SimulationOptions& options, const RigCalibr
   }
 }
 
-Pose TrackSimulator::CameraPoseAt(int camera, Timestamp stamp, const Eigen::Vector2d& uv) const {
-  const CameraCalibration& calibration = rig_.cameras[static_cast<std::size_t>(camera)];
-  const CameraModel& model = calibration.model;
+double TrackSimulator::TimeOf(int camera, Timestamp stamp, const Eigen::Vector2d& uv) const {
+  const CameraModel& model = rig_.cameras[static_cast<std::size_t>(camera)].model;
   const double count = rig_.readout_by_columns ? model.width_px() : model.height_px();
   const double line = rig_.readout_by_columns ? uv.x() : uv.y();
   const double delay_s = rig_.t_d_s + (line - 0.5 * (count - 1.0)) * rig_.t_r_s / count;
-  const Pose T_GB = trajectory_.At(SecondsBetween(start_, stamp) + delay_s).T_GB;
-  return Pose{calibration.R_CB, calibration.p_CB} * T_GB.Inverse();
+  return SecondsBetween(start_, stamp) + delay_s;
 }
 
-bool TrackSimulator::See(int camera, Timestamp stamp, const Eigen::Vector3d& p_G,
+Pose TrackSimulator::CameraPoseAt(int camera, double t_s) const {
+  const CameraCalibration& calibration = rig_.cameras[static_cast<std::size_t>(camera)];
+  return Pose{calibration.R_CB, calibration.p_CB} * trajectory_.At(t_s).T_GB.Inverse();
+}
+
+bool TrackSimulator::See(int camera, Timestamp stamp, const ScenePoint& point,
                          Eigen::Vector2d* uv) const {
   const CameraModel& model = rig_.cameras[static_cast<std::size_t>(camera)].model;
   Eigen::Vector2d pixel(0.5 * (model.width_px() - 1), 0.5 * (model.height_px() - 1));
@@ -74,7 +65,8 @@ bool TrackSimulator::See(int camera, Timestamp stamp, const Eigen::Vector3d& p_G
   // the share of the readout that the image moves in, a few percent.
   const int rounds = rig_.t_r_s == 0.0 ? 1 : 8;
   for (int i = 0; i < rounds; ++i) {
-    const Eigen::Vector3d p_C = CameraPoseAt(camera, stamp, pixel) * p_G;
+    const double t_s = TimeOf(camera, stamp, pixel);
+    const Eigen::Vector3d p_C = CameraPoseAt(camera, t_s) * scene_.PositionAt(point, t_s);
     if (p_C.z() < 0.05) return false;
     if (p_C.head<2>().norm() > max_radius_[static_cast<std::size_t>(camera)] * p_C.z()) {
       return false;
@@ -82,21 +74,17 @@ bool TrackSimulator::See(int camera, Timestamp stamp, const Eigen::Vector3d& p_G
     if (!model.Project(p_C, &pixel)) return false;
   }
   *uv = pixel;
-  return model.Contains(pixel);
+  if (!model.Contains(pixel)) return false;
+  const double t_s = TimeOf(camera, stamp, pixel);
+  return scene_.Sees(CameraPoseAt(camera, t_s).Inverse().p, point, t_s);
 }
 
-bool TrackSimulator::DrawPoint(Timestamp stamp, const Eigen::Vector2d& uv, Eigen::Vector3d* p_G) {
-  const double share = random_.Uniform();
-  const double depth_share = random_.Uniform(0.35, 0.95);
+std::optional<ScenePoint> TrackSimulator::DrawPoint(Timestamp stamp, const Eigen::Vector2d& uv) {
   const auto ray_C = rig_.cameras[0].model.Unproject(uv);
-  if (!ray_C) return false;
-  const Pose T_GC = CameraPoseAt(0, stamp, uv).Inverse();
-  const Eigen::Vector3d direction = T_GC.R * *ray_C;
-  double distance = DistanceToWall(room_, T_GC.p, direction);
-  CHECK_GT(distance, 0.0) << "the trajectory leaves the room";
-  if (share < options_.clutter_share) distance *= depth_share;
-  *p_G = T_GC.p + distance * direction;
-  return true;
+  if (!ray_C) return std::nullopt;
+  const double t_s = TimeOf(0, stamp, uv);
+  const Pose T_GC = CameraPoseAt(0, t_s).Inverse();
+  return scene_.Draw(T_GC.p, T_GC.R * *ray_C, t_s, &random_);
 }
 
 int TrackSimulator::CellOf(const Eigen::Vector2d& uv) const {
@@ -107,11 +95,12 @@ int TrackSimulator::CellOf(const Eigen::Vector2d& uv) const {
 }
 
 void TrackSimulator::EndTracks(Timestamp stamp) {
-  const double end_probability = 1.0 / options_.mean_track_frames;
   std::size_t kept = 0;
   for (Track& track : tracks_) {
-    const bool ends = random_.Uniform() < end_probability;
-    if (ends || !See(0, stamp, track.p_G, &track.uv)) continue;
+    const double mean_frames =
+        track.weak ? options_.weak_track_frames : options_.mean_track_frames;
+    const bool ends = random_.Uniform() < 1.0 / mean_frames;
+    if (ends || !See(0, stamp, track.point, &track.uv)) continue;
     tracks_[kept++] = track;
   }
   tracks_.resize(kept);
@@ -133,26 +122,32 @@ void TrackSimulator::StartTracks(Timestamp stamp) {
     const double row = cell / kGridColumns + random_.Uniform();
     track.uv = {column * model.width_px() / kGridColumns - 0.5,
                 row * model.height_px() / kGridRows - 0.5};
-    if (!DrawPoint(stamp, track.uv, &track.p_G)) continue;
+    const auto point = DrawPoint(stamp, track.uv);
+    if (!point) continue;
+    track.point = *point;
+    track.weak = options_.weak_share > 0.0 && random_.Uniform() < options_.weak_share;
     track.id = next_id_++;
     tracks_.push_back(track);
   }
 }
 
 void TrackSimulator::Mismatch(Timestamp stamp, Track* track) {
-  const double angle = random_.Uniform(0.0, 2.0 * kPi);
+  const double angle = random_.Uniform(0.0, 2.0 * std::numbers::pi);
   const double throw_px = random_.Uniform(5.0, options_.outlier_px);
   const Eigen::Vector2d uv =
       track->uv + throw_px * Eigen::Vector2d(std::cos(angle), std::sin(angle));
   if (!rig_.cameras[0].model.Contains(uv)) return;
-  if (DrawPoint(stamp, uv, &track->p_G)) track->uv = uv;
+  if (const auto point = DrawPoint(stamp, uv)) {
+    track->point = *point;
+    track->uv = uv;
+  }
 }
 
 TrackObservation TrackSimulator::Noisy(std::uint64_t id, const Eigen::Vector2d& uv) {
   const double sigma_px = options_.noise_scale * options_.pixel_noise_px;
   Eigen::Vector2d noisy = uv + sigma_px * random_.NormalVector<2>();
   if (options_.outlier_share > 0.0 && random_.Uniform() < options_.outlier_share) {
-    const double angle = random_.Uniform(0.0, 2.0 * kPi);
+    const double angle = random_.Uniform(0.0, 2.0 * std::numbers::pi);
     const double throw_px = random_.Uniform(5.0, options_.outlier_px);
     noisy += throw_px * Eigen::Vector2d(std::cos(angle), std::sin(angle));
   }
@@ -176,7 +171,7 @@ TrackFrameSet TrackSimulator::Observe(Timestamp stamp) {
     frame.observations.reserve(tracks_.size());
     for (const Track& track : tracks_) {
       Eigen::Vector2d uv = track.uv;
-      if (camera == 0 || See(camera, stamp, track.p_G, &uv)) {
+      if (camera == 0 || See(camera, stamp, track.point, &uv)) {
         frame.observations.push_back(Noisy(track.id, uv));
       }
     }

@@ -5,24 +5,19 @@
 #include "common/dataset/track_stream.h"
 #include "common/measurement/calibration.h"
 #include "common/support/random.h"
+#include "experiments/simulation/scene.h"
 #include "experiments/simulation/trajectory.h"
 
 namespace duet {
 
 struct SimulationOptions;
 
-/// A box with points on its walls, m in G.
-struct Room {
-  Eigen::Vector3d low;
-  Eigen::Vector3d high;
-};
-
 /// Makes the tracks of a recording, frame after frame.
 class TrackSimulator {
  public:
-  /// Keeps references to `trajectory`.
+  /// Keeps references to `options`, `trajectory` and `scene`.
   TrackSimulator(const SimulationOptions& options, const RigCalibration& rig,
-                 const Trajectory& trajectory, Timestamp start, const Room& room, Random random);
+                 const Trajectory& trajectory, Timestamp start, const Scene& scene, Random random);
 
   /// What the cameras see at the stamp; stamps ascend.
   [[nodiscard]] TrackFrameSet Observe(Timestamp stamp);
@@ -30,17 +25,20 @@ class TrackSimulator {
  private:
   struct Track {
     std::uint64_t id;
-    Eigen::Vector3d p_G;
+    ScenePoint point;
     Eigen::Vector2d uv;  // without noise, first camera
+    bool weak = false;
   };
 
-  // The camera's pose T_CG at the instant at which its row (or column) `uv` was read.
-  [[nodiscard]] Pose CameraPoseAt(int camera, Timestamp stamp, const Eigen::Vector2d& uv) const;
-  // The pixel of a point, its row solved for; false where it is out of view.
-  [[nodiscard]] bool See(int camera, Timestamp stamp, const Eigen::Vector3d& p_G,
+  // When the row (or column) of `uv` was read, s of the trajectory.
+  [[nodiscard]] double TimeOf(int camera, Timestamp stamp, const Eigen::Vector2d& uv) const;
+  // T_CG then.
+  [[nodiscard]] Pose CameraPoseAt(int camera, double t_s) const;
+  // The pixel of a landmark, its row solved for; false where it is out of view or hidden.
+  [[nodiscard]] bool See(int camera, Timestamp stamp, const ScenePoint& point,
                          Eigen::Vector2d* uv) const;
-  // A point of the room that is seen at `uv` in the first camera; false where none is.
-  [[nodiscard]] bool DrawPoint(Timestamp stamp, const Eigen::Vector2d& uv, Eigen::Vector3d* p_G);
+  // A landmark that is seen at `uv` in the first camera.
+  [[nodiscard]] std::optional<ScenePoint> DrawPoint(Timestamp stamp, const Eigen::Vector2d& uv);
   void EndTracks(Timestamp stamp);
   void StartTracks(Timestamp stamp);
   void Mismatch(Timestamp stamp, Track* track);
@@ -51,7 +49,7 @@ class TrackSimulator {
   RigCalibration rig_;
   const Trajectory& trajectory_;
   Timestamp start_;
-  Room room_;
+  const Scene& scene_;
   Random random_;
   std::vector<double> max_radius_;  // of (x/z, y/z) in view, a camera
   std::vector<Track> tracks_;       // ascending id
