@@ -4,9 +4,8 @@
 #include <cmath>
 
 #include "common/geometry/pose_jumps.h"
-#include "common/imu/imu_buffer.h"
-#include "common/imu/imu_delta.h"
-#include "experiments/check/inertial_truth_fit.h"
+#include "common/imu/inertial_truth_fit.h"
+#include "common/imu/motion_between_poses.h"
 #include "experiments/check/stamp_checks.h"
 
 namespace duet {
@@ -14,31 +13,12 @@ namespace {
 
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
-// What the IMU measured between neighbouring poses, where it covers them without a gap.
-std::vector<std::optional<RelativeMotion>> MotionBetween(const Recording& recording) {
-  const std::vector<StampedPose>& poses = recording.truth->poses;
-  ImuBuffer buffer;
-  for (const ImuSample& sample : recording.imu) buffer.Add(sample);
-  std::vector<std::optional<RelativeMotion>> motion(poses.size() - 1);
-  std::vector<ImuSample> readings;
-  for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
-    const Timestamp t0 = poses[i].timestamp;
-    const Timestamp t1 = poses[i + 1].timestamp;
-    if (!buffer.Covers(t0, t1) || t1 - t0 > 100'000'000) continue;
-    buffer.Extract(t0, t1, &readings);
-    const ImuDelta delta = IntegrateImu(
-        readings, {}, recording.imu_sensor.calibration, recording.imu_sensor.noise,
-        {.covariance = false, .bias_jacobians = false, .calibration_jacobians = false});
-    motion[i] = RelativeMotion{.R = delta.R, .s = delta.s, .y = delta.y};
-  }
-  return motion;
-}
-
 void CheckJumps(const Recording& recording, Timestamp origin, Findings* findings) {
   const std::vector<StampedPose>& poses = recording.truth->poses;
   if (poses.size() < 4) return;
-  const std::vector<PoseJump> jumps =
-      FindPoseJumps(poses, MotionBetween(recording), recording.g_G());
+  const std::vector<PoseJump> jumps = FindPoseJumps(
+      poses, MotionBetweenPoses(poses, recording.imu, recording.imu_sensor.calibration),
+      recording.g_G());
   if (jumps.empty()) {
     findings->push_back({Severity::kInfo,
                          "truth.jumps",

@@ -27,11 +27,11 @@ struct ImuSampling {
   double drop_share = 0.0;
 };
 
-/// The noise-free side of an IMU: what it is and what it is exposed to.
+/// What an IMU is, and the gravity that it is exposed to.
 struct ImuUnderSimulation {
-  ImuCalibration calibration;
-  ImuNoise noise;
-  ImuBiases biases;  ///< at the first sample
+  ImuCalibration calibration = {};
+  ImuNoise noise = {};
+  ImuBiases biases = {};  ///< at the first sample
   Eigen::Vector3d g_G = Eigen::Vector3d::Zero();
 };
 

@@ -12,7 +12,7 @@ namespace duet {
 namespace {
 
 constexpr std::size_t kFewestPoses = 6;
-constexpr double kDefaultSpacing_s = 0.05;
+constexpr double kDefaultSpacing_s = 0.03;
 // What the IMUs of the field read at most.
 constexpr double kLargestAcceleration = 16.0 * 9.81;                      // m/s^2
 constexpr double kLargestRate = 2000.0 * 3.14159265358979323846 / 180.0;  // rad/s

@@ -27,8 +27,9 @@ class SplineTrajectory final : public Trajectory {
 };
 
 struct SplineOptions {
-  /// 0: 50 ms, or the median time between poses where that is longer. EuRoC's truth (200 Hz, a
-  /// tenth of a millimetre) gives accelerations nearest to its own IMU's with that.
+  /// 0: 30 ms, or the median time between poses where that is longer. Of 20 to 100 ms it is the one
+  /// that gives EuRoC's truth (200 Hz, a tenth of a millimetre) accelerations nearest to its own
+  /// IMU's.
   double knot_spacing_s = 0.0;
   /// Takes jumps of the poses out (FindPoseJumps, RemovePoseJumps) instead of refusing them.
   bool bridge_jumps = false;
