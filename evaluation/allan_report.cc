@@ -212,7 +212,8 @@ std::string AllanScript(const ImuAllan& allan, const ImuNoise& told, const std::
       "set format xy '10^{%T}'\n"
       "set grid xtics ytics lc rgb '#dddddd' lt 1\n"
       "set xlabel 'averaging time {/Symbol t} [s]'\n"
-      "set key bottom left samplen 2\n"
+      "set key top center samplen 2 spacing 1.1\n"
+      "set bmargin 3.5\n"
       "do for [form in 'svg pdf png'] {\n"
       "  if (form eq 'svg') { set terminal svg size 1000,450 font 'Liberation Sans,13' }\n"
       "  if (form eq 'pdf') { set terminal pdfcairo size 7.2in,3.3in font 'Liberation Sans,9' }\n"
@@ -220,34 +221,46 @@ std::string AllanScript(const ImuAllan& allan, const ImuNoise& told, const std::
       "  set output 'allan.'.form\n"
       "  set multiplot layout 1,2 title '" +
       quoted + "' noenhanced\n";
-  const auto plot = [&text](const std::string& sensor, const std::string& unit, int column,
-                            double white, double walk, double told_white, double told_walk) {
-    text += "  set ylabel '" + sensor + " [" + unit + "]'\n  plot \\\n";
-    const std::array<const char*, 3> colors = {"#0072b2", "#d55e00", "#009e73"};
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::string color = colors[static_cast<std::size_t>(axis)];
-      text += "    'allan.csv' using 1:" + std::to_string(column + axis) +
-              " with points pt 7 ps 0.35 lc rgb '" + color + "' title '" +
-              kAxes[static_cast<std::size_t>(axis)] +
-              "', \\\n    'allan.csv' using 1:" + std::to_string(column + axis + 6) +
-              " with lines lw 1 lc rgb '" + color + "' notitle, \\\n";
+  const auto plot = [&text](const std::array<AxisAllan, 3>& axes, const std::string& sensor,
+                            const std::string& unit, int column, double white, double walk,
+                            double told_white, double told_walk) {
+    double low = 1e300;
+    double high = 0.0;
+    for (const AxisAllan& axis : axes) {
+      for (const AllanPoint& point : axis.curve) {
+        if (point.deviation > 0.0) low = std::min(low, point.deviation);
+        high = std::max(high, point.deviation);
+      }
     }
+    if (high <= 0.0) low = high = 1.0;
+    text += "  set ylabel '" + sensor + " [" + unit + "]'\n  set yrange [" +
+            FormatNumber(std::pow(10.0, std::floor(std::log10(0.5 * low)))) + ":" +
+            FormatNumber(std::pow(10.0, std::ceil(std::log10(3.0 * high)))) + "]\n  plot \\\n";
     const auto line = [&](const std::string& formula, const std::string& style,
                           const std::string& name, bool last) {
       text += "    " + formula + " with lines " + style + " title '" + name + "'" +
               (last ? "\n" : ", \\\n");
     };
-    line(FormatNumber(white) + "/sqrt(x)", "lw 1.5 dt 2 lc rgb '#555555'",
-         "white " + Scientific(white) + ", found", false);
-    line(FormatNumber(walk) + "*sqrt(x/3)", "lw 1.5 dt 4 lc rgb '#555555'",
-         "walk " + Scientific(walk) + ", found", false);
     line("sqrt(" + FormatNumber(told_white) + "**2/x+" + FormatNumber(told_walk) + "**2*x/3)",
-         "lw 1 lc rgb '#999999'", "as told by sensor.yaml", true);
+         "lw 5 lc rgb '#d8d8d8'", "as sensor.yaml tells", false);
+    const std::array<const char*, 3> colors = {"#0072b2", "#d55e00", "#009e73"};
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string color = colors[static_cast<std::size_t>(axis)];
+      text += "    'allan.csv' using 1:" + std::to_string(column + axis) +
+              " with points pt 7 ps 0.45 lc rgb '" + color + "' title '" +
+              kAxes[static_cast<std::size_t>(axis)] +
+              "', \\\n    'allan.csv' using 1:" + std::to_string(column + axis + 6) +
+              " with lines lw 1 lc rgb '" + color + "' notitle, \\\n";
+    }
+    line(FormatNumber(white) + "/sqrt(x)", "lw 1.5 dt 2 lc rgb '#555555'",
+         "white " + Scientific(white), false);
+    line(FormatNumber(walk) + "*sqrt(x/3)", "lw 1.5 dt 4 lc rgb '#555555'",
+         "walk " + Scientific(walk), true);
   };
-  plot("gyroscope", "rad/s", 3, found.gyroscope_density, found.gyroscope_random_walk,
-       told.gyroscope_density, told.gyroscope_random_walk);
-  plot("accelerometer", "m/s^2", 6, found.accelerometer_density, found.accelerometer_random_walk,
-       told.accelerometer_density, told.accelerometer_random_walk);
+  plot(allan.gyroscope, "gyroscope", "rad/s", 3, found.gyroscope_density,
+       found.gyroscope_random_walk, told.gyroscope_density, told.gyroscope_random_walk);
+  plot(allan.accelerometer, "accelerometer", "m/s^2", 6, found.accelerometer_density,
+       found.accelerometer_random_walk, told.accelerometer_density, told.accelerometer_random_walk);
   text +=
       "  unset multiplot\n"
       "  unset output\n"

@@ -31,6 +31,14 @@ std::vector<ImuSample> Chosen(const std::vector<ImuSample>& imu) {
   return chosen;
 }
 
+// The folder's own name, for the figure.
+std::string NameOf(const std::string& dataset) {
+  std::filesystem::path path = std::filesystem::absolute(dataset).lexically_normal();
+  if (path.filename().empty()) path = path.parent_path();
+  if (path.filename() == "mav0") path = path.parent_path();
+  return path.filename();
+}
+
 int RunAllan(const CommandLine& /*line*/) {
   RequireAbsent(FLAGS_out);
   RecordingOptions imu_alone;
@@ -47,7 +55,7 @@ int RunAllan(const CommandLine& /*line*/) {
   WriteTextFile(folder.path() / "allan.csv", AllanCsv(allan));
   WriteTextFile(folder.path() / "allan.json", json.dump(2) + "\n");
   WriteTextFile(folder.path() / "allan.gp",
-                AllanScript(allan, told, "Allan deviation, " + FLAGS_dataset));
+                AllanScript(allan, told, "Allan deviation, " + NameOf(FLAGS_dataset)));
   const bool drawn = RunGnuplot(folder.path(), "allan.gp");
   folder.Commit();
   std::fputs(AllanText(allan, told).c_str(), stdout);

@@ -239,6 +239,20 @@ std::vector<std::string> TrajectoryNames() {
   return names;
 }
 
+std::string NamedMotionsText() {
+  std::string text;
+  for (const NamedMotion& motion : NamedMotions()) {
+    std::string line = motion.name;
+    line.resize(std::max<std::size_t>(line.size() + 1, 23), ' ');
+    line += motion.world;
+    line.resize(31, ' ');
+    line += motion.summary;
+    if (motion.longest_s > 0.0) line += "; at most " + FormatNumber(motion.longest_s) + " s";
+    text += line + "\n";
+  }
+  return text;
+}
+
 const NamedMotion& FindMotion(const std::string& name) { return FindEntry(name).motion; }
 
 FlightSpace FlightSpaceOf(const std::string& world) {

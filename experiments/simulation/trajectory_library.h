@@ -25,6 +25,8 @@ struct NamedMotion {
 /// (euroc_sequences.h).
 [[nodiscard]] const std::vector<NamedMotion>& NamedMotions();
 [[nodiscard]] std::vector<std::string> TrajectoryNames();
+/// A line each: name, world, what it is and, where it ends, its longest duration.
+[[nodiscard]] std::string NamedMotionsText();
 
 /// Throws InputError for an unknown name.
 [[nodiscard]] const NamedMotion& FindMotion(const std::string& name);

@@ -173,6 +173,14 @@ TEST(Trajectory, RoomWalkMovesAsEurocsEasyFlights) {
   EXPECT_NEAR(std::sqrt(acceleration_squared / count), 0.65, 0.1);
 }
 
+TEST(Trajectory, ListNamesEveryMotionWithItsWorld) {
+  const std::string text = NamedMotionsText();
+  EXPECT_NE(text.find("\nplanar_driving         street  a car"), std::string::npos) << text;
+  EXPECT_NE(text.find("1 m/s straight ahead; at most 130 s\n"), std::string::npos) << text;
+  EXPECT_EQ(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')),
+            NamedMotions().size());
+}
+
 TEST(Trajectory, UnknownNameIsBadInput) {
   EXPECT_THROW(static_cast<void>(MakeTrajectory("moon", 1.0, 0.0)), InputError);
 }
