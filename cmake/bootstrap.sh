@@ -9,6 +9,7 @@ duet_packages=(
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-features2d-dev
   libopencv-video-dev libopencv-calib3d-dev
   libgflags-dev libgoogle-glog-dev libyaml-cpp-dev nlohmann-json3-dev libssl-dev libboost-dev
+  gnuplot-nox fonts-liberation
 )
 duet_test_packages=(libgtest-dev libgmock-dev libbenchmark-dev)
 

@@ -13,5 +13,6 @@ namespace duet {
 [[nodiscard]] Command SimulateCommand();
 [[nodiscard]] Command CheckCommand();
 [[nodiscard]] Command MonteCarloCommand();
+[[nodiscard]] Command AllanCommand();
 
 }  // namespace duet

@@ -10,8 +10,10 @@ DEFINE_string(init, "auto",
               "Where the first state comes from: the recording's ground truth, or standing still; "
               "auto: standing still, else a failure that says what was missing.");
 DEFINE_string(cameras, "0", "Cameras to use.");
-DEFINE_double(start, 0.0, "Begin this long after the recording's first image [s].");
-DEFINE_double(duration, 0.0, "Use images for this long from --start; 0: to the end [s].");
+DEFINE_double(start, 0.0,
+              "Begin this long after the recording's first image (duet allan: IMU sample) [s].");
+DEFINE_double(duration, 0.0,
+              "Use images (duet allan: samples) for this long from --start; 0: to the end [s].");
 DEFINE_string(alignment, "posyaw",
               "How the estimate is laid onto the truth before errors are "
               "taken.");

@@ -39,7 +39,8 @@ double QuinticCoefficient(double x2) {
 
 // (x - sin x) / x^3 = 1/6 - x^2/120 + ...
 double CubicCoefficient(double x2) {
-  if (x2 < kSquareSeriesBelow) return 1.0 / 6.0 - x2 * FactorialSeries(x2, 1, [](int) { return 1.0; });
+  if (x2 < kSquareSeriesBelow)
+    return 1.0 / 6.0 - x2 * FactorialSeries(x2, 1, [](int) { return 1.0; });
   const double x = std::sqrt(x2);
   return (x - std::sin(x)) / (x2 * x);
 }

@@ -10,7 +10,6 @@
 namespace duet {
 namespace {
 
-
 void CheckCamera(const CameraCalibration& camera, const std::string& name, Findings* findings) {
   const CameraModel& model = camera.model;
   const auto& p = model.parameters();

@@ -5,40 +5,19 @@
 
 #include "common/geometry/angle.h"
 #include "common/geometry/pose_jumps.h"
-#include "common/imu/imu_buffer.h"
-#include "common/imu/imu_delta.h"
-#include "experiments/check/inertial_truth_fit.h"
+#include "common/imu/inertial_truth_fit.h"
+#include "common/imu/motion_between_poses.h"
 #include "experiments/check/stamp_checks.h"
 
 namespace duet {
 namespace {
 
-
-// What the IMU measured between neighbouring poses, where it covers them without a gap.
-std::vector<std::optional<RelativeMotion>> MotionBetween(const Recording& recording) {
-  const std::vector<StampedPose>& poses = recording.truth->poses;
-  ImuBuffer buffer;
-  for (const ImuSample& sample : recording.imu) buffer.Add(sample);
-  std::vector<std::optional<RelativeMotion>> motion(poses.size() - 1);
-  std::vector<ImuSample> readings;
-  for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
-    const Timestamp t0 = poses[i].timestamp;
-    const Timestamp t1 = poses[i + 1].timestamp;
-    if (!buffer.Covers(t0, t1) || t1 - t0 > 100'000'000) continue;
-    buffer.Extract(t0, t1, &readings);
-    const ImuDelta delta = IntegrateImu(
-        readings, {}, recording.imu_sensor.calibration, recording.imu_sensor.noise,
-        {.covariance = false, .bias_jacobians = false, .calibration_jacobians = false});
-    motion[i] = RelativeMotion{.R = delta.R, .s = delta.s, .y = delta.y};
-  }
-  return motion;
-}
-
 void CheckJumps(const Recording& recording, Timestamp origin, Findings* findings) {
   const std::vector<StampedPose>& poses = recording.truth->poses;
   if (poses.size() < 4) return;
-  const std::vector<PoseJump> jumps =
-      FindPoseJumps(poses, MotionBetween(recording), recording.g_G());
+  const std::vector<PoseJump> jumps = FindPoseJumps(
+      poses, MotionBetweenPoses(poses, recording.imu, recording.imu_sensor.calibration),
+      recording.g_G());
   if (jumps.empty()) {
     findings->push_back({Severity::kInfo,
                          "truth.jumps",
@@ -60,7 +39,8 @@ void CheckJumps(const Recording& recording, Timestamp origin, Findings* findings
   std::string list;
   for (std::size_t i = 0; i < std::min<std::size_t>(5, ordered.size()); ++i) {
     list += Sentence("%s%.1f mm and %.2f deg at %s", i == 0 ? "" : ", ",
-                     1e3 * ordered[i].displacement.norm(), kDegreesPerRadian * ordered[i].rotation.norm(),
+                     1e3 * ordered[i].displacement.norm(),
+                     kDegreesPerRadian * ordered[i].rotation.norm(),
                      SinceOrigin(ordered[i].after, origin).c_str());
   }
   findings->push_back(

@@ -11,9 +11,9 @@ namespace duet {
 
 /// A landmark of a scene: a place on a surface, or a point at rest.
 struct ScenePoint {
-  int surface = -1;                                      ///< -1: a point at rest, p_G
-  Eigen::Vector2d uv_m = Eigen::Vector2d::Zero();        ///< on the surface
-  Eigen::Vector3d p_G = Eigen::Vector3d::Zero();         ///< m, where it was when drawn
+  int surface = -1;                                ///< -1: a point at rest, p_G
+  Eigen::Vector2d uv_m = Eigen::Vector2d::Zero();  ///< on the surface
+  Eigen::Vector3d p_G = Eigen::Vector3d::Zero();   ///< m, where it was when drawn
 };
 
 /// Where simulated tracks have their points.

@@ -1,15 +1,17 @@
 #include "experiments/simulation/simulator.h"
 
-#include <glog/logging.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "common/geometry/so3.h"
 #include "common/support/input_error.h"
+#include "common/support/logging.h"
+#include "experiments/simulation/euroc_sequences.h"
+#include "experiments/simulation/imu_simulator.h"
 #include "experiments/simulation/scene.h"
 #include "experiments/simulation/track_simulator.h"
+#include "experiments/simulation/trajectory_library.h"
 #include "experiments/simulation/world/world_library.h"
 
 namespace duet {
@@ -21,7 +23,8 @@ constexpr Timestamp kEpoch = 1'400'000'000'000'000'000;
 constexpr double kImuMargin_s = 0.2;
 constexpr const char* kBoxWorld = "box";
 // Separate random sequences, so that e.g. another IMU rate leaves the tracks as they are.
-enum RandomStream : std::uint64_t { kImuStream = 1, kTrackStream = 2, kToldStream = 3 };
+// (1, 11 and 12 are the IMU's.)
+enum RandomStream : std::uint64_t { kTrackStream = 2, kToldStream = 3 };
 
 Eigen::Vector3d ToVector3(const std::vector<double>& values, const char* key) {
   if (values.size() != 3) throw InputError("", 0, key, "expected three numbers");
@@ -34,10 +37,6 @@ Eigen::Quaterniond RotationFromRows(const std::array<double, 9>& rows) {
   return Eigen::Quaterniond(M).normalized();
 }
 
-Timestamp StampOf(Timestamp start, int index, double rate_hz) {
-  return start + static_cast<Timestamp>(std::llround(1e9 * static_cast<double>(index) / rate_hz));
-}
-
 ImuNoise ScaledNoise(const SimulationOptions& options) {
   return {.gyroscope_density = options.noise_scale * options.gyroscope_density,
           .accelerometer_density = options.noise_scale * options.accelerometer_density,
@@ -45,39 +44,26 @@ ImuNoise ScaledNoise(const SimulationOptions& options) {
           .accelerometer_random_walk = options.noise_scale * options.accelerometer_random_walk};
 }
 
-// Readings and truth at the IMU's stamps. The walk's steps have the variance density^2 dt, the
-// white noise density^2 / dt a sample (4.6, 4.7).
-void SimulateImu(const SimulationOptions& options, SimulatedRecording* recording) {
-  Random random(static_cast<std::uint64_t>(options.seed), kImuStream);
-  const double dt_s = 1.0 / options.imu_rate_hz;
-  const double root_dt = std::sqrt(dt_s);
-  const double root_rate = std::sqrt(options.imu_rate_hz);
-  const int count =
-      static_cast<int>(std::floor(recording->trajectory->duration_s() * options.imu_rate_hz)) + 1;
-  recording->imu.reserve(static_cast<std::size_t>(count));
-  recording->truth.reserve(static_cast<std::size_t>(count));
-  ImuBiases biases{.b_g = ToVector3(options.b_g_rad_per_s, "b_g_rad_per_s"),
-                   .b_a = ToVector3(options.b_a_m_per_s2, "b_a_m_per_s2")};
-  const ImuNoise& noise = recording->noise;
-  for (int i = 0; i < count; ++i) {
-    const Timestamp stamp = StampOf(recording->start, i, options.imu_rate_hz);
-    const double t_s =
-        std::min(SecondsBetween(recording->start, stamp), recording->trajectory->duration_s());
-    const Kinematics k = recording->trajectory->At(t_s);
-    const ImuRates true_rates{.omega_B = k.omega_B,
-                              .a_B = k.T_GB.R.conjugate() * (k.a_G - recording->g_G)};
-    const ImuRates read = DistortRates(true_rates, recording->true_rig.imu, biases);
-    ImuSample sample;
-    sample.timestamp = stamp;
-    sample.omega_m = read.omega_B + noise.gyroscope_density * root_rate * random.NormalVector<3>();
-    sample.a_m = read.a_B + noise.accelerometer_density * root_rate * random.NormalVector<3>();
-    recording->imu.push_back(sample);
-    recording->truth.push_back({.instant = stamp,
-                                .nav = {.R_GB = k.T_GB.R, .p_GB = k.T_GB.p, .v_GB = k.v_GB},
-                                .biases = biases});
-    biases.b_g += noise.gyroscope_random_walk * root_dt * random.NormalVector<3>();
-    biases.b_a += noise.accelerometer_random_walk * root_dt * random.NormalVector<3>();
-  }
+// Readings and truth at the IMU's stamps.
+void AddImu(const SimulationOptions& options, SimulatedRecording* recording) {
+  const ImuUnderSimulation imu{.calibration = recording->true_rig.imu,
+                               .noise = recording->noise,
+                               .biases = {.b_g = ToVector3(options.b_g_rad_per_s, "b_g_rad_per_s"),
+                                          .b_a = ToVector3(options.b_a_m_per_s2, "b_a_m_per_s2")},
+                               .g_G = recording->g_G};
+  const ImuSampling sampling{.rate_hz = options.imu_rate_hz,
+                             .gyroscope_range = options.gyroscope_range_rad_per_s,
+                             .accelerometer_range = options.accelerometer_range_m_per_s2,
+                             .jitter_s = options.imu_jitter_s,
+                             .jitter_is_stamped = options.imu_jitter_is_stamped,
+                             .drop_share = options.imu_drop_share};
+  SimulatedImu simulated = SimulateImu(*recording->trajectory, recording->start, imu, sampling,
+                                       static_cast<std::uint64_t>(options.seed));
+  recording->imu = std::move(simulated.samples);
+  recording->truth = std::move(simulated.truth);
+  recording->dropped_imu_samples = simulated.dropped;
+  recording->clipped_gyroscope_samples = simulated.clipped_gyroscope;
+  recording->clipped_accelerometer_samples = simulated.clipped_accelerometer;
 }
 
 RigCalibration DrawToldRig(const SimulationOptions& options, const RigCalibration& true_rig) {
@@ -87,6 +73,14 @@ RigCalibration DrawToldRig(const SimulationOptions& options, const RigCalibratio
   Eigen::VectorXd error = random.NormalVector(layout.size());
   error.array() *= options.noise_scale * layout.PriorSigmas().array();
   return BoxPlus(true_rig, layout, -error);
+}
+
+// A box like the walls around the flight space of a world.
+BoxScene BoxAround(const std::string& world, double clutter_share) {
+  if (world == "room") return {{-4.5, -4.0, 0.0}, {4.5, 4.0, 3.2}, clutter_share};
+  const FlightSpace space = FlightSpaceOf(world);
+  return {space.low - Eigen::Vector3d(2.0, 3.0, space.low.z()),
+          space.high + Eigen::Vector3d(2.0, 3.0, 3.0), clutter_share};
 }
 
 SimulatedRecording SimulateIn(const SimulationOptions& options,
@@ -108,20 +102,20 @@ SimulatedRecording SimulateIn(const SimulationOptions& options,
     recording.true_rig.t_r_s = options.t_r_s;
   }
   recording.told_rig = DrawToldRig(options, recording.true_rig);
-  SimulateImu(options, &recording);
+  AddImu(options, &recording);
 
   TrackSimulator tracks(options, recording.true_rig, *recording.trajectory, recording.start, scene,
                         Random(static_cast<std::uint64_t>(options.seed), kTrackStream));
   const double frames_s = recording.trajectory->duration_s() - 2.0 * kImuMargin_s;
   // Frames fall on the IMU's stamps where the rates divide, as EuRoC's do.
   const Timestamp first_frame =
-      StampOf(recording.start, static_cast<int>(std::lround(kImuMargin_s * options.imu_rate_hz)),
-              options.imu_rate_hz);
+      EvenStamp(recording.start, static_cast<int>(std::lround(kImuMargin_s * options.imu_rate_hz)),
+                options.imu_rate_hz);
   const int frame_count =
       static_cast<int>(std::floor(frames_s * options.camera_rate_hz + 1e-6)) + 1;
   recording.frames.reserve(static_cast<std::size_t>(std::max(frame_count, 0)));
   for (int i = 0; i < frame_count; ++i) {
-    recording.frames.push_back(tracks.Observe(StampOf(first_frame, i, options.camera_rate_hz)));
+    recording.frames.push_back(tracks.Observe(EvenStamp(first_frame, i, options.camera_rate_hz)));
   }
   return recording;
 }
@@ -182,17 +176,17 @@ SimulatedRecording Simulate(const SimulationOptions& options) {
   auto trajectory =
       MakeTrajectory(options.trajectory, options.duration_s + 2.0 * kImuMargin_s, options.rest_s);
   if (options.world != kBoxWorld) return Simulate(options, std::move(trajectory));
-  const BoxScene scene({-4.5, -4.0, 0.0}, {4.5, 4.0, 3.2}, options.clutter_share);
+  const BoxScene scene = BoxAround(FindMotion(options.trajectory).world, options.clutter_share);
   return SimulateIn(options, std::move(trajectory), scene);
 }
 
 SimulatedRecording Simulate(const SimulationOptions& options,
                             std::shared_ptr<const Trajectory> trajectory) {
   if (options.world != kBoxWorld) {
-    const WorldScene scene(MakeWorld(
-        options.world, {.seed = static_cast<std::uint64_t>(options.seed),
-                        .textures = false,
-                        .moving_bodies = options.moving_bodies}));
+    const WorldScene scene(
+        MakeWorld(options.world, {.seed = static_cast<std::uint64_t>(options.seed),
+                                  .textures = false,
+                                  .moving_bodies = options.moving_bodies}));
     return SimulateIn(options, std::move(trajectory), scene);
   }
   Eigen::Vector3d low = trajectory->At(0.0).T_GB.p;
@@ -229,13 +223,24 @@ EstimatorSetup MakeSetup(const SimulatedRecording& recording, const SharedOption
 }
 
 const std::vector<std::string>& SimulationPresetNames() {
-  static const std::vector<std::string> names = {"room_easy", "room_easy_stereo", "room_rest",
-                                                 "hover",     "excited",          "outliers"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = {"room_easy", "room_easy_stereo", "room_rest",
+                                    "hover",     "excited",          "outliers"};
+    for (const EurocSequence& sequence : EurocSequences()) all.push_back(sequence.name);
+    return all;
+  }();
   return names;
 }
 
 SimulationOptions SimulationPreset(const std::string& name) {
   SimulationOptions options;
+  for (const EurocSequence& sequence : EurocSequences()) {
+    if (sequence.name != name) continue;
+    options.trajectory = name;
+    options.duration_s = sequence.thesis.duration_s;
+    options.rest_s = kEurocRest_s;
+    return options;
+  }
   if (name == "room_easy") return options;
   if (name == "room_easy_stereo") {
     options.cameras = 2;

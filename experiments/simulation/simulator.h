@@ -32,6 +32,11 @@ struct SimulationOptions {
   double gravity_m_per_s2 = 9.81;
   std::vector<double> b_g_rad_per_s = {-0.002, 0.021, 0.075};
   std::vector<double> b_a_m_per_s2 = {-0.05, 0.12, 0.07};
+  double gyroscope_range_rad_per_s = 0.0;
+  double accelerometer_range_m_per_s2 = 0.0;
+  double imu_jitter_s = 0.0;
+  bool imu_jitter_is_stamped = true;
+  double imu_drop_share = 0.0;
 
   double camera_rate_hz = 20.0;
   int cameras = 1;
@@ -63,7 +68,8 @@ struct SimulationOptions {
 struct SimulatedRecording {
   std::vector<ImuSample> imu;
   std::vector<TrackFrameSet> frames;
-  std::vector<InertialState> truth;  ///< at the IMU's stamps, with the true biases
+  /// At the IMU's stamps, those of lost samples too, with the true biases.
+  std::vector<InertialState> truth;
   RigCalibration true_rig;
   RigCalibration told_rig;
   ImuNoise noise;  ///< scaled; what the estimators are told
@@ -71,6 +77,9 @@ struct SimulatedRecording {
   Eigen::Vector3d g_G = Eigen::Vector3d::Zero();
   Timestamp start = 0;  ///< the instant of the trajectory's t = 0
   std::shared_ptr<const Trajectory> trajectory;
+  int dropped_imu_samples = 0;
+  int clipped_gyroscope_samples = 0;  ///< at the end of the range
+  int clipped_accelerometer_samples = 0;
 
   /// The truth at any instant of the recording: exact pose and velocity, biases linear between the
   /// IMU's samples.
@@ -107,14 +116,16 @@ struct SimulatedRecording {
                                        const SharedOptions& shared);
 
 /// Named settings: room_easy (30 s, mono), room_easy_stereo, room_rest (starts at rest), hover,
-/// excited (lissajous), outliers. Throws InputError for an unknown name.
+/// excited (lissajous), outliers, and one like each sequence of EuRoC with its duration and
+/// kEurocRest_s of rest (MH_01_easy, ... V2_03_difficult). Throws InputError for an unknown name.
 [[nodiscard]] const std::vector<std::string>& SimulationPresetNames();
 [[nodiscard]] SimulationOptions SimulationPreset(const std::string& name);
 
 template <class Visitor>
 void SimulationOptions::Visit(Visitor& v) {
   v.Field("trajectory", &trajectory,
-          {.doc = "circle, figure_eight, lissajous, room_walk or hover."});
+          {.doc = "Name of a trajectory (circle, room_walk, aggressive, planar_driving, V1_01_easy "
+                  "...; an unknown one lists all)."});
   v.Field("duration_s", &duration_s,
           {.doc = "Time from the first to the last frame.", .unit = "s", .min = 0.5, .max = 3600});
   v.Field("rest_s", &rest_s,
@@ -140,6 +151,19 @@ void SimulationOptions::Visit(Visitor& v) {
           {.doc = "The gyroscope's bias at the start, x y z.", .unit = "rad/s"});
   v.Field("b_a_m_per_s2", &b_a_m_per_s2,
           {.doc = "The accelerometer's bias at the start, x y z.", .unit = "m/s^2"});
+  v.Field("gyroscope_range_rad_per_s", &gyroscope_range_rad_per_s,
+          {.doc = "Largest reading of an axis, either sign; 0: none.", .unit = "rad/s", .min = 0});
+  v.Field("accelerometer_range_m_per_s2", &accelerometer_range_m_per_s2,
+          {.doc = "Largest reading of an axis, either sign; 0: none.", .unit = "m/s^2", .min = 0});
+  v.Field("imu_jitter_s", &imu_jitter_s,
+          {.doc = "1 sigma of the IMU's sampling instants about even ones, at most 0.45 intervals.",
+           .unit = "s",
+           .min = 0,
+           .max = 0.05});
+  v.Field("imu_jitter_is_stamped", &imu_jitter_is_stamped,
+          {.doc = "Stamps follow the jittered instants; false: they stay even and are wrong."});
+  v.Field("imu_drop_share", &imu_drop_share,
+          {.doc = "Share of IMU samples that are lost.", .min = 0, .max = 0.9});
   v.Field("camera_rate_hz", &camera_rate_hz,
           {.doc = "Rate of the cameras.", .unit = "Hz", .min = 1, .max = 200});
   v.Field("cameras", &cameras, {.doc = "One or two cameras.", .min = 1, .max = 2});
@@ -151,9 +175,10 @@ void SimulationOptions::Visit(Visitor& v) {
            .unit = "s",
            .min = -0.1,
            .max = 0.1});
-  v.Field("world", &world,
-          {.doc = "Where the tracks' points are: on the surfaces of room, bare_room, hall or street, "
-                  "with occlusion, or (box) on the walls of a box and between them, without."});
+  v.Field(
+      "world", &world,
+      {.doc = "Where the tracks' points are: on the surfaces of room, bare_room, hall or street, "
+              "with occlusion, or (box) on the walls of a box and between them, without."});
   v.Field("moving_bodies", &moving_bodies, {.doc = "Walkers and cars in the world."});
   v.Field("max_tracks", &max_tracks,
           {.doc = "Tracks in each frame of the first camera.", .min = 1, .max = 5000});
@@ -177,7 +202,9 @@ void SimulationOptions::Visit(Visitor& v) {
       "outlier_px", &outlier_px,
       {.doc = "Largest throw of an outlier or a mismatch.", .unit = "px", .min = 5, .max = 500});
   v.Field("clutter_share", &clutter_share,
-          {.doc = "Share of points that stand in the box, not on its walls (world box).", .min = 0, .max = 1});
+          {.doc = "Share of points that stand in the box, not on its walls (world box).",
+           .min = 0,
+           .max = 1});
 }
 
 }  // namespace duet

@@ -30,8 +30,8 @@ double LargestRadius(const CameraModel& model) {
 }  // namespace
 
 TrackSimulator::TrackSimulator(const SimulationOptions& options, const RigCalibration& rig,
-                               const Trajectory& trajectory, Timestamp start,
-                               const Scene& scene, Random random)
+                               const Trajectory& trajectory, Timestamp start, const Scene& scene,
+                               Random random)
     : options_(options),
       rig_(rig),
       trajectory_(trajectory),
@@ -97,8 +97,7 @@ int TrackSimulator::CellOf(const Eigen::Vector2d& uv) const {
 void TrackSimulator::EndTracks(Timestamp stamp) {
   std::size_t kept = 0;
   for (Track& track : tracks_) {
-    const double mean_frames =
-        track.weak ? options_.weak_track_frames : options_.mean_track_frames;
+    const double mean_frames = track.weak ? options_.weak_track_frames : options_.mean_track_frames;
     const bool ends = random_.Uniform() < 1.0 / mean_frames;
     if (ends || !See(0, stamp, track.point, &track.uv)) continue;
     tracks_[kept++] = track;

@@ -1,53 +1,12 @@
 #include "experiments/simulation/trajectory.h"
 
-#include <glog/logging.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "common/support/input_error.h"
+#include "common/support/logging.h"
 
 namespace duet {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-HarmonicTrajectory::Channels CircleChannels() {
-  constexpr double kRate = 0.25;  // 2 m at 0.5 m/s
-  return {.x = {0.0, 0.0, {{2.0, kRate, kPi / 2}}},
-          .y = {0.0, 0.0, {{2.0, kRate, 0.0}}},
-          .z = {1.5, 0.0, {}},
-          .yaw = {kPi / 2, kRate, {}},
-          .pitch = {},
-          .roll = {}};
-}
-
-HarmonicTrajectory::Channels FigureEightChannels() {
-  return {.x = {0.0, 0.0, {{2.2, 0.3, 0.0}}},
-          .y = {0.0, 0.0, {{1.2, 0.6, 0.0}}},
-          .z = {1.5, 0.0, {{0.3, 0.7, 0.4}}},
-          .yaw = {0.0, 0.0, {{1.0, 0.3, 0.3}, {0.2, 0.9, 1.1}}},
-          .pitch = {0.0, 0.0, {{0.12, 0.8, 0.2}}},
-          .roll = {0.0, 0.0, {{0.15, 0.65, 1.3}}}};
-}
-
-HarmonicTrajectory::Channels LissajousChannels() {
-  return {.x = {0.0, 0.0, {{1.6, 0.45, 0.0}, {0.15, 2.3, 0.5}}},
-          .y = {0.0, 0.0, {{1.3, 0.61, 0.7}, {0.15, 2.0, 1.9}}},
-          .z = {1.5, 0.0, {{0.45, 0.83, 1.1}, {0.08, 2.6, 0.2}}},
-          .yaw = {0.0, 0.15, {{0.7, 0.71, 0.3}, {0.15, 1.9, 0.0}}},
-          .pitch = {0.0, 0.0, {{0.35, 0.97, 0.9}, {0.06, 2.2, 1.4}}},
-          .roll = {0.0, 0.0, {{0.40, 0.79, 2.1}, {0.06, 2.4, 0.6}}}};
-}
-
-HarmonicTrajectory::Channels RoomWalkChannels() {
-  return {.x = {0.0, 0.0, {{2.0, 0.17, 0.0}, {0.35, 0.71, 0.4}, {0.12, 2.1, 1.0}}},
-          .y = {0.0, 0.0, {{1.6, 0.23, 1.2}, {0.30, 0.63, 2.0}, {0.13, 1.9, 0.1}}},
-          .z = {1.4, 0.0, {{0.35, 0.41, 0.3}, {0.07, 2.5, 0.8}}},
-          .yaw = {0.0, 0.18, {{0.55, 0.47, 0.2}, {0.06, 1.6, 1.7}}},
-          .pitch = {0.0, 0.0, {{0.12, 0.83, 0.5}, {0.03, 1.9, 0.9}}},
-          .roll = {0.0, 0.0, {{0.12, 0.67, 1.4}, {0.03, 2.2, 0.3}}}};
-}
 
 // The body as EuRoC's rig has it, x up and z forward, in (forward, left, up).
 Eigen::Matrix3d NominalBody() {
@@ -61,7 +20,7 @@ Eigen::Matrix3d NominalBody() {
 }  // namespace
 
 std::array<double, 3> HarmonicChannel::At(double s) const {
-  std::array<double, 3> value = {offset + slope * s, slope, 0.0};
+  std::array<double, 3> value = {offset + slope * s + 0.5 * bend * s * s, slope + bend * s, bend};
   for (const Term& term : terms) {
     const double sine = std::sin(term.rate * s + term.phase);
     const double cosine = std::cos(term.rate * s + term.phase);
@@ -138,39 +97,28 @@ Kinematics HarmonicTrajectory::At(double t_s) const {
   return k;
 }
 
-const std::vector<std::string>& TrajectoryNames() {
-  static const std::vector<std::string> names = {"circle", "figure_eight", "lissajous", "room_walk",
-                                                 "hover"};
-  return names;
-}
+RoadTrajectory::RoadTrajectory(HarmonicChannel across, double x_start_m, double height_m,
+                               TimeWarp warp, double duration_s)
+    : across_(std::move(across)),
+      x_start_m_(x_start_m),
+      height_m_(height_m),
+      warp_(std::move(warp)),
+      duration_s_(duration_s) {}
 
-std::shared_ptr<const Trajectory> MakeTrajectory(const std::string& name, double duration_s,
-                                                 double rest_s) {
-  HarmonicTrajectory::Channels channels;
-  if (name == "circle") {
-    channels = CircleChannels();
-  } else if (name == "figure_eight") {
-    channels = FigureEightChannels();
-  } else if (name == "lissajous") {
-    channels = LissajousChannels();
-  } else if (name == "room_walk" || name == "hover") {
-    channels = RoomWalkChannels();
-  } else {
-    std::string known;
-    for (const std::string& each : TrajectoryNames()) known += (known.empty() ? "" : ", ") + each;
-    throw InputError("", 0, "trajectory", "unknown trajectory '" + name + "'; expected " + known);
-  }
-  constexpr double kRampDuration = 1.0;
-  std::vector<TimeWarp::Ramp> ramps;
-  if (rest_s > 0.0) ramps.push_back({rest_s, kRampDuration, 1.0});
-  if (name == "hover") {
-    for (double stop = rest_s + 8.0; stop < duration_s; stop += 20.0) {
-      ramps.push_back({stop - kRampDuration, kRampDuration, 0.0});
-      ramps.push_back({stop + 6.0, kRampDuration, 1.0});
-    }
-  }
-  return std::make_shared<HarmonicTrajectory>(
-      std::move(channels), TimeWarp(rest_s > 0.0 ? 0.0 : 1.0, std::move(ramps)), duration_s);
+Kinematics RoadTrajectory::At(double t_s) const {
+  const auto [s, s_dot, s_ddot] = warp_.At(t_s);
+  const double x = x_start_m_ + s;
+  const auto [y, slope, bend] = across_.At(x);
+  Kinematics k;
+  k.T_GB.p = {x, y, height_m_};
+  k.v_GB = {s_dot, slope * s_dot, 0.0};
+  k.a_G = {s_ddot, bend * s_dot * s_dot + slope * s_ddot, 0.0};
+  const Eigen::AngleAxisd R_z(std::atan(slope), Eigen::Vector3d::UnitZ());
+  const Eigen::Matrix3d R_0 = NominalBody();
+  k.T_GB.R = Eigen::Quaterniond(R_z.toRotationMatrix() * R_0).normalized();
+  const double yaw_rate = bend * s_dot / (1.0 + slope * slope);
+  k.omega_B = R_0.transpose() * Eigen::Vector3d(0.0, 0.0, yaw_rate);
+  return k;
 }
 
 }  // namespace duet

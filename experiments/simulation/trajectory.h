@@ -1,8 +1,6 @@
 #pragma once
 
 #include <array>
-#include <memory>
-#include <string>
 #include <vector>
 
 #include "common/geometry/pose_spline.h"
@@ -17,7 +15,7 @@ class Trajectory {
   [[nodiscard]] virtual Kinematics At(double t_s) const = 0;
 };
 
-/// offset + slope s + sum of amplitude sin(rate s + phase).
+/// offset + slope s + bend s^2 / 2 + sum of amplitude sin(rate s + phase).
 struct HarmonicChannel {
   struct Term {
     double amplitude;
@@ -26,7 +24,8 @@ struct HarmonicChannel {
   };
   double offset = 0.0;
   double slope = 0.0;
-  std::vector<Term> terms;
+  std::vector<Term> terms = {};
+  double bend = 0.0;
 
   /// Value, first and second derivative at s.
   [[nodiscard]] std::array<double, 3> At(double s) const;
@@ -73,27 +72,24 @@ class HarmonicTrajectory final : public Trajectory {
   double duration_s_;
 };
 
-/// A spline through recorded poses.
-class SplineTrajectory final : public Trajectory {
+/// A car on a level road along G's x axis: the place on the road, x = x_start_m + s(t), goes with
+/// the warp, the place across it is y(x), and the body heads along the path (yaw = atan y'(x)), R_0
+/// as above.
+class RoadTrajectory final : public Trajectory {
  public:
-  explicit SplineTrajectory(PoseSpline spline) : spline_(std::move(spline)) {}
+  /// `across` in m by x in m; `height_m`: z of the body.
+  RoadTrajectory(HarmonicChannel across, double x_start_m, double height_m, TimeWarp warp,
+                 double duration_s);
 
-  [[nodiscard]] double duration_s() const override;
-  /// `t_s` is rounded to nanoseconds.
+  [[nodiscard]] double duration_s() const override { return duration_s_; }
   [[nodiscard]] Kinematics At(double t_s) const override;
 
  private:
-  PoseSpline spline_;
+  HarmonicChannel across_;
+  double x_start_m_;
+  double height_m_;
+  TimeWarp warp_;
+  double duration_s_;
 };
-
-/// Names that MakeTrajectory takes: circle (constant rates: weakly excited), figure_eight,
-/// lissajous (all six degrees of freedom, strong), room_walk (as EuRoC's easy flights: 0.5 m/s, 0.4
-/// rad/s), hover (room_walk that stands still from 8 to 14 s and for 6 s of every further 20).
-[[nodiscard]] const std::vector<std::string>& TrajectoryNames();
-
-/// Within about 3 m of (0, 0), 0.8 to 2.2 m above the floor. `rest_s` > 0: at rest for that long
-/// first, then off within a second. Throws InputError for an unknown name.
-[[nodiscard]] std::shared_ptr<const Trajectory> MakeTrajectory(const std::string& name,
-                                                               double duration_s, double rest_s);
 
 }  // namespace duet

@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "common/imu/inertial_truth_fit.h"
 #include "common/support/input_error.h"
 #include "common/support/text_file.h"
 #include "experiments/check/camera_checks.h"
 #include "experiments/check/imu_checks.h"
-#include "experiments/check/inertial_truth_fit.h"
 #include "experiments/check/stamp_checks.h"
 #include "experiments/check/truth_checks.h"
 #include "experiments/simulation/write_recording.h"

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "common/support/input_error.h"
+#include "experiments/simulation/euroc_sequences.h"
+#include "experiments/simulation/trajectory_library.h"
 
 namespace duet {
 namespace {
@@ -14,11 +18,18 @@ using Eigen::Vector3d;
 constexpr double kStep_s = 1e-4;
 constexpr double kTolerance = 2e-6;
 
+// As long as asked for, but within the motion's own space.
+std::shared_ptr<const Trajectory> Make(const std::string& name, double duration_s, double rest_s) {
+  const double longest_s = FindMotion(name).longest_s;
+  if (longest_s > 0.0) duration_s = std::min(duration_s, longest_s + rest_s);
+  return MakeTrajectory(name, duration_s, rest_s);
+}
+
 class TrajectoryByName : public testing::TestWithParam<std::string> {};
 
 TEST_P(TrajectoryByName, DerivativesAreThoseOfThePose) {
-  const auto trajectory = MakeTrajectory(GetParam(), 40.0, 1.5);
-  for (double t = 0.05; t < 39.0; t += 0.173) {
+  const auto trajectory = Make(GetParam(), 40.0, 1.5);
+  for (double t = 0.05; t < trajectory->duration_s() - 0.1; t += 0.173) {
     const Kinematics before = trajectory->At(t - kStep_s);
     const Kinematics now = trajectory->At(t);
     const Kinematics after = trajectory->At(t + kStep_s);
@@ -31,20 +42,20 @@ TEST_P(TrajectoryByName, DerivativesAreThoseOfThePose) {
   }
 }
 
-TEST_P(TrajectoryByName, StaysInTheRoomAndUpright) {
-  const auto trajectory = MakeTrajectory(GetParam(), 300.0, 0.0);
-  for (double t = 0.0; t <= 300.0; t += 0.1) {
+TEST_P(TrajectoryByName, StaysInItsFlightSpaceAndUpright) {
+  const FlightSpace space = FlightSpaceOf(FindMotion(GetParam()).world);
+  const auto trajectory = Make(GetParam(), 300.0, 0.0);
+  for (double t = 0.0; t <= trajectory->duration_s(); t += 0.1) {
     const Kinematics k = trajectory->At(t);
-    EXPECT_LT(k.T_GB.p.head<2>().cwiseAbs().maxCoeff(), 3.0);
-    EXPECT_GT(k.T_GB.p.z(), 0.8);
-    EXPECT_LT(k.T_GB.p.z(), 2.2);
+    ASSERT_TRUE((k.T_GB.p.array() >= space.low.array()).all()) << k.T_GB.p.transpose();
+    ASSERT_TRUE((k.T_GB.p.array() <= space.high.array()).all()) << k.T_GB.p.transpose();
     // The body's x axis points up, as EuRoC's does.
-    EXPECT_GT((k.T_GB.R * Vector3d::UnitX()).z(), 0.5);
+    ASSERT_GT((k.T_GB.R * Vector3d::UnitX()).z(), 0.5);
   }
 }
 
 TEST_P(TrajectoryByName, IsAtRestWhereItSaysSo) {
-  const auto trajectory = MakeTrajectory(GetParam(), 30.0, 2.0);
+  const auto trajectory = Make(GetParam(), 30.0, 2.0);
   const Kinematics start = trajectory->At(0.0);
   for (double t = 0.0; t < 2.0; t += 0.1) {
     const Kinematics k = trajectory->At(t);
@@ -53,6 +64,7 @@ TEST_P(TrajectoryByName, IsAtRestWhereItSaysSo) {
     EXPECT_EQ(k.a_G, Vector3d::Zero());
     EXPECT_EQ(k.omega_B, Vector3d::Zero());
   }
+  if (GetParam() == "standstill") return;
   EXPECT_GT(trajectory->At(3.5).v_GB.norm() + trajectory->At(3.5).omega_B.norm(), 0.1);
 }
 
@@ -66,6 +78,81 @@ TEST(Trajectory, HoverStandsStillOnTheWay) {
   }
   EXPECT_GT(trajectory->At(6.0).v_GB.norm(), 0.1);
   EXPECT_GT(trajectory->At(16.0).v_GB.norm(), 0.1);
+}
+
+// What the degenerate motions are made for, exactly.
+TEST(Trajectory, PrimitivesKeepConstantWhatTheyAreNamedFor) {
+  const Vector3d g_G(0, 0, -9.81);
+  const auto specific_force = [&](const Kinematics& k) -> Vector3d {
+    return k.T_GB.R.conjugate() * (k.a_G - g_G);
+  };
+  for (double t = 0.0; t < 30.0; t += 0.37) {
+    EXPECT_EQ(MakeTrajectory("straight_line", 30.0, 0.0)->At(t).v_GB, Vector3d(1, 0, 0));
+    EXPECT_EQ(MakeTrajectory("straight_line", 30.0, 0.0)->At(t).omega_B, Vector3d::Zero());
+    EXPECT_EQ(MakeTrajectory("pure_rotation", 30.0, 0.0)->At(t).v_GB, Vector3d::Zero());
+    EXPECT_EQ(MakeTrajectory("standstill", 30.0, 0.0)->At(t).omega_B, Vector3d::Zero());
+    // About the body's x axis.
+    const Kinematics constant = MakeTrajectory("constant_rate", 30.0, 0.0)->At(t);
+    EXPECT_LT((constant.omega_B - Vector3d(0.4, 0, 0)).norm(), 1e-15);
+    const Kinematics one_axis = MakeTrajectory("one_axis_rotation", 30.0, 0.0)->At(t);
+    EXPECT_EQ(one_axis.omega_B.tail<2>(), Eigen::Vector2d::Zero());
+    const Kinematics pushed = MakeTrajectory("constant_acceleration", 30.0, 0.0)->At(t);
+    EXPECT_NEAR(specific_force(pushed).z(), 0.2, 1e-14);
+    EXPECT_LT(pushed.omega_B.head<2>().norm(), 1e-15);
+  }
+  EXPECT_THROW(static_cast<void>(MakeTrajectory("straight_line", 140.0, 0.0)), InputError);
+}
+
+TEST(Trajectory, DrivingIsLevelAndAlongThePath) {
+  const auto trajectory = MakeTrajectory("planar_driving", 60.0, 0.0);
+  double fastest = 0.0;
+  for (double t = 0.0; t <= 60.0; t += 0.1) {
+    const Kinematics k = trajectory->At(t);
+    fastest = std::max(fastest, k.v_GB.norm());
+    EXPECT_EQ(k.v_GB.z(), 0.0);
+    // The camera looks along the body's z axis: no slip to the side, nor up.
+    const Vector3d v_B = k.T_GB.R.conjugate() * k.v_GB;
+    EXPECT_LT(v_B.head<2>().norm(), 1e-12);
+    EXPECT_LT(k.omega_B.tail<2>().norm(), 1e-15);
+  }
+  EXPECT_GT(fastest, 4.5);
+  EXPECT_EQ(trajectory->At(19.0).v_GB, Vector3d::Zero()) << "the light";
+  EXPECT_EQ(trajectory->At(50.0).v_GB, Vector3d::Zero()) << "the end of the street";
+}
+
+TEST(Trajectory, AggressiveFlightIsFast) {
+  const auto trajectory = MakeTrajectory("aggressive", 60.0, 0.0);
+  double speed = 0.0;
+  double rate = 0.0;
+  for (double t = 0.0; t <= 60.0; t += 0.02) {
+    speed = std::max(speed, trajectory->At(t).v_GB.norm());
+    rate = std::max(rate, trajectory->At(t).omega_B.norm());
+  }
+  EXPECT_NEAR(speed, 3.2, 0.4);
+  EXPECT_NEAR(rate, 3.2, 0.4);
+}
+
+TEST(Trajectory, FlightsLikeEurocHaveTheThesissRows) {
+  std::printf("%s", EurocSequencesText().c_str());
+  for (const EurocSequence& sequence : EurocSequences()) {
+    const double duration_s = sequence.thesis.duration_s;
+    const auto trajectory = MakeTrajectory(sequence.name, duration_s, kEurocRest_s);
+    const SequenceRow row = MeasureMotion(*trajectory, duration_s);
+    // The table's two digits of the speed leave 1.2 % between its own length and speed.
+    EXPECT_NEAR(row.length_m / sequence.thesis.length_m, 1.0, 0.005) << sequence.name;
+    EXPECT_NEAR(row.average_speed_m_per_s / sequence.thesis.average_speed_m_per_s, 1.0, 0.02);
+    EXPECT_NEAR(row.average_rate_rad_per_s / sequence.thesis.average_rate_rad_per_s, 1.0, 0.02);
+  }
+}
+
+// A shorter simulation is the beginning of the longer one.
+TEST(Trajectory, DurationCutsTheMotionOff) {
+  for (const std::string& name : TrajectoryNames()) {
+    const Kinematics a = MakeTrajectory(name, 10.0, 1.0)->At(7.3);
+    const Kinematics b = MakeTrajectory(name, 30.0, 1.0)->At(7.3);
+    EXPECT_EQ(a.T_GB.p, b.T_GB.p) << name;
+    EXPECT_EQ(a.omega_B, b.omega_B) << name;
+  }
 }
 
 TEST(Trajectory, RoomWalkMovesAsEurocsEasyFlights) {
@@ -84,6 +171,14 @@ TEST(Trajectory, RoomWalkMovesAsEurocsEasyFlights) {
   EXPECT_NEAR(speed / count, 0.45, 0.15);
   EXPECT_NEAR(rate / count, 0.35, 0.15);
   EXPECT_NEAR(std::sqrt(acceleration_squared / count), 0.65, 0.1);
+}
+
+TEST(Trajectory, ListNamesEveryMotionWithItsWorld) {
+  const std::string text = NamedMotionsText();
+  EXPECT_NE(text.find("\nplanar_driving         street  a car"), std::string::npos) << text;
+  EXPECT_NE(text.find("1 m/s straight ahead; at most 130 s\n"), std::string::npos) << text;
+  EXPECT_EQ(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')),
+            NamedMotions().size());
 }
 
 TEST(Trajectory, UnknownNameIsBadInput) {

@@ -1,4 +1,4 @@
-#include "experiments/check/inertial_truth_fit.h"
+#include "common/imu/inertial_truth_fit.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/SVD>
