@@ -36,35 +36,52 @@ HarmonicChannel DrawLoop(double middle, double half_width, double rate, Random* 
   return channel;
 }
 
-HarmonicChannel DrawWobble(double amplitude_rate, double low_rate, double high_rate, double largest,
-                           Random* random) {
-  HarmonicChannel::Term term = DrawTerm(1.0, low_rate, high_rate, random);
-  term.amplitude = std::min(largest, amplitude_rate / term.rate);
-  return {.terms = {term}};
+struct WobbleRange {
+  double low_rate, high_rate;  // rad/s
+  double largest;              // amplitude
+};
+
+// A term whose derivative has the amplitude `speed`.
+HarmonicChannel::Term DrawWobble(double speed, const WobbleRange& range, Random* random) {
+  HarmonicChannel::Term term = DrawTerm(1.0, range.low_rate, range.high_rate, random);
+  term.amplitude = std::min(range.largest, speed / term.rate);
+  return term;
 }
+
+// Shares of the average speed and rate that are the control loop's, not the path's; with them the
+// accelerations and tilt rates are about those of EuRoC's own truth (MH_03: 1.3 m/s^2 and 0.23
+// rad/s root mean square).
+constexpr double kSlowWobble = 0.35;
+constexpr double kFastWobble = 0.12;
+constexpr double kTiltWobble = 0.35;
 
 Shape DrawShape(const EurocSequence& sequence, Random* random) {
   const FlightSpace space = FlightSpaceOf(sequence.world);
   const Eigen::Vector3d middle = 0.5 * (space.low + space.high);
   const Eigen::Vector3d half = 0.5 * (space.high - space.low);
-  // A fifth of the average speed and rate are the control loop's, not the path's.
-  const double wobble_speed = 0.2 * sequence.thesis.average_speed_m_per_s;
-  const double wobble_rate = 0.2 * sequence.thesis.average_rate_rad_per_s;
+  const double speed = sequence.thesis.average_speed_m_per_s;
+  const double rate = sequence.thesis.average_rate_rad_per_s;
+  const auto wobble = [&](double half_width) {
+    HarmonicChannel channel;
+    channel.terms.push_back(DrawWobble(kSlowWobble * speed, {1.8, 2.8, 0.1 * half_width}, random));
+    channel.terms.push_back(DrawWobble(kFastWobble * speed, {4.5, 6.0, 0.03 * half_width}, random));
+    return channel;
+  };
   Shape shape;
   shape.loops.x = DrawLoop(middle.x(), half.x(), 1.0, random);
   shape.loops.y = DrawLoop(middle.y(), half.y(), 1.37, random);
   shape.loops.z = DrawLoop(middle.z(), half.z(), 1.83, random);
-  shape.wobble.x = DrawWobble(wobble_speed, 1.8, 2.8, 0.1 * half.x(), random);
-  shape.wobble.y = DrawWobble(wobble_speed, 1.8, 2.8, 0.1 * half.y(), random);
-  shape.wobble.z = DrawWobble(wobble_speed, 1.8, 2.8, 0.1 * half.z(), random);
+  shape.wobble.x = wobble(half.x());
+  shape.wobble.y = wobble(half.y());
+  shape.wobble.z = wobble(half.z());
   const double turn = random->Uniform() < 0.5 ? -0.12 : 0.12;
   shape.gaze.yaw = {.slope = turn,
-                    .terms = {DrawTerm(0.9, 0.3, 0.4, random), DrawTerm(0.3, 0.7, 1.1, random)}};
-  shape.gaze.pitch = {.terms = {DrawTerm(0.14, 0.5, 0.8, random)}};
-  shape.gaze.roll = {.terms = {DrawTerm(0.14, 0.5, 0.8, random)}};
-  shape.wobble.yaw = DrawWobble(wobble_rate, 2.0, 3.0, 0.1, random);
-  shape.wobble.pitch = DrawWobble(wobble_rate, 3.5, 5.0, 0.05, random);
-  shape.wobble.roll = DrawWobble(wobble_rate, 3.5, 5.0, 0.05, random);
+                    .terms = {DrawTerm(0.8, 0.3, 0.4, random), DrawTerm(0.2, 0.7, 1.1, random)}};
+  shape.gaze.pitch = {.terms = {DrawTerm(0.2, 0.7, 1.1, random)}};
+  shape.gaze.roll = {.terms = {DrawTerm(0.2, 0.7, 1.1, random)}};
+  shape.wobble.yaw = {.terms = {DrawWobble(0.2 * rate, {2.0, 3.0, 0.1}, random)}};
+  shape.wobble.pitch = {.terms = {DrawWobble(kTiltWobble * rate, {3.5, 5.0, 0.06}, random)}};
+  shape.wobble.roll = {.terms = {DrawWobble(kTiltWobble * rate, {3.5, 5.0, 0.06}, random)}};
   return shape;
 }
 

@@ -54,7 +54,7 @@ double NoiseOfTheImu(const Trajectory& trajectory) {
 
 TEST(ImuEvidence, FlightsLikeEurocAreFollowedWithinFiveMillimetres) {
   for (const EurocSequence& sequence : EurocSequences()) {
-    const auto trajectory = MakeTrajectory(sequence.name, 60.0, kEurocRest_s);
+    const auto trajectory = MakeTrajectory(sequence.name, sequence.thesis.duration_s, kEurocRest_s);
     const double drift = WorstDrift(*trajectory, 200.0);
     std::printf("%-16s 200 Hz, 10 s: at most %.3f mm\n", sequence.name.c_str(), 1e3 * drift);
     EXPECT_LT(drift, 5e-3) << sequence.name;

@@ -49,10 +49,11 @@ TEST(SplineThroughFile, FollowsTheFlightThatTheFileWasWrittenOf) {
       for (double t = 0.2; t < 19.8; t += 0.0737) {
         const Kinematics a = spline->At(t);
         const Kinematics b = flight->At(t);
-        // PoseSpline's bounds for knots up to 50 ms apart and wobbles of 5 rad/s: positions to h^6,
-        // accelerations to h^4, rates to h^2 (1e-4 |omega x omega'|).
+        // PoseSpline's bounds for knots up to 50 ms apart and wobbles of 6 rad/s: positions to h^6,
+        // accelerations to h^4 ((6 rad/s 0.05 s)^4 = 0.8 % of a wobble's 0.7 m/s^2), rates to h^2
+        // (1e-4 |omega x omega'|).
         EXPECT_LT((a.T_GB.p - b.T_GB.p).norm(), 2e-6);
-        EXPECT_LT((a.a_G - b.a_G).norm(), 3e-3);
+        EXPECT_LT((a.a_G - b.a_G).norm(), 6e-3);
         EXPECT_LT((a.omega_B - b.omega_B).norm(), 1e-4);
       }
     }
