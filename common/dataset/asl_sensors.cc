@@ -188,7 +188,10 @@ CameraModel ReadCameraModel(YamlMap* map, const std::string& coefficients_key) {
 ImuSensor ReadImuSensor(std::string_view yaml, const std::string& file,
                         std::vector<std::string>* unknown_keys) {
   const YamlNode root = ParseSensor(yaml, file);
-  YamlMap map(root, file);
+  return ReadImuSensor(YamlMap(root, file), unknown_keys);
+}
+
+ImuSensor ReadImuSensor(YamlMap map, std::vector<std::string>* unknown_keys) {
   PassOverCommonKeys(&map);
   const Pose T_BS = ReadPoseOrIdentity(&map);
   if (T_BS.p.norm() > 1e-9 || T_BS.R.vec().norm() > 1e-9) {
@@ -218,7 +221,10 @@ ImuSensor ReadImuSensor(std::string_view yaml, const std::string& file,
 CameraSensor ReadCameraSensor(std::string_view yaml, const std::string& file,
                               std::vector<std::string>* unknown_keys) {
   const YamlNode root = ParseSensor(yaml, file);
-  YamlMap map(root, file);
+  return ReadCameraSensor(YamlMap(root, file), unknown_keys);
+}
+
+CameraSensor ReadCameraSensor(YamlMap map, std::vector<std::string>* unknown_keys) {
   PassOverCommonKeys(&map);
   CameraSensor sensor;
   sensor.T_BS = ReadMatrix4(&map, "T_BS");

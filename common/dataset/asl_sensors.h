@@ -43,6 +43,11 @@ struct CameraSensor {
                                       std::vector<std::string>* unknown_keys = nullptr);
 [[nodiscard]] CameraSensor ReadCameraSensor(std::string_view yaml, const std::string& file,
                                             std::vector<std::string>* unknown_keys = nullptr);
+/// The same of a map within a file.
+[[nodiscard]] ImuSensor ReadImuSensor(YamlMap map,
+                                      std::vector<std::string>* unknown_keys = nullptr);
+[[nodiscard]] CameraSensor ReadCameraSensor(YamlMap map,
+                                            std::vector<std::string>* unknown_keys = nullptr);
 /// T_BS of any sensor (identity where the file has none).
 [[nodiscard]] Pose ReadSensorPose(std::string_view yaml, const std::string& file);
 

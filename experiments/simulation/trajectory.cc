@@ -121,4 +121,17 @@ Kinematics RoadTrajectory::At(double t_s) const {
   return k;
 }
 
+PlacedTrajectory::PlacedTrajectory(std::shared_ptr<const Trajectory> trajectory, double yaw_rad,
+                                   const Eigen::Vector3d& shift)
+    : trajectory_(std::move(trajectory)),
+      placement_{Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())), shift} {}
+
+Kinematics PlacedTrajectory::At(double t_s) const {
+  Kinematics k = trajectory_->At(t_s);
+  k.T_GB = placement_ * k.T_GB;
+  k.v_GB = placement_.R * k.v_GB;
+  k.a_G = placement_.R * k.a_G;
+  return k;
+}
+
 }  // namespace duet

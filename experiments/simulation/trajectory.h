@@ -92,4 +92,21 @@ class RoadTrajectory final : public Trajectory {
   double duration_s_;
 };
 
+/// A trajectory seen from another place: turned about the vertical, then moved. Gravity, and with it
+/// what an IMU reads, stays the same.
+class PlacedTrajectory final : public Trajectory {
+ public:
+  PlacedTrajectory(std::shared_ptr<const Trajectory> trajectory, double yaw_rad,
+                   const Eigen::Vector3d& shift);
+
+  [[nodiscard]] double duration_s() const override { return trajectory_->duration_s(); }
+  [[nodiscard]] Kinematics At(double t_s) const override;
+  /// T_GG': from the trajectory's own G' to G.
+  [[nodiscard]] const Pose& placement() const { return placement_; }
+
+ private:
+  std::shared_ptr<const Trajectory> trajectory_;
+  Pose placement_;
+};
+
 }  // namespace duet
