@@ -20,7 +20,7 @@ struct PixelRays {
   }
   /// The ray `du`, `dv` in [-0.5, 0.5] px from the centre. Between the corners and the centre by a
   /// bilinear surface and a bump that is zero in the corners; the rest is of third order: below
-  /// 1e-3 px up to 70 degrees off the axis for focal lengths from 190 px on.
+  /// 2.5e-3 px up to 70 degrees off the axis for focal lengths from 95 px on.
   [[nodiscard]] Eigen::Vector2f At(float du, float dv) const {
     const float u = du + 0.5F;
     const float v = dv + 0.5F;

@@ -65,8 +65,9 @@ struct TextureFootprint {
 /// The mean of the texture over a footprint. Its extent across decides about the mip level, up to
 /// `max_probes` samples side by side cover its extent along (as hardware's anisotropic filters do);
 /// beyond that the level goes up. Samples lie symmetric to (u, v), so that nothing is shifted.
+/// `lod_bias` takes that many levels more: softer.
 [[nodiscard]] inline float SampleFootprint(const Texture& texture, const TextureFootprint& f,
-                                           int max_probes) {
+                                           int max_probes, float lod_bias = 0.0F) {
   // The footprint is the ellipse J J' with J = (by_x, by_y): its axes by closed form.
   const float uu = f.u_by_x * f.u_by_x + f.u_by_y * f.u_by_y;
   const float vv = f.v_by_x * f.v_by_x + f.v_by_y * f.v_by_y;
@@ -81,12 +82,12 @@ struct TextureFootprint {
   const float covered2 = std::max(minor2, 1.0F);
   const float round2 = max_probes <= 2 ? 4.0F : 1.75F;
   if (max_probes <= 1 || major2 <= round2 * covered2) {
-    return SampleTrilinear(texture, f.u, f.v, 0.5F * CoarseLog2(major2));
+    return SampleTrilinear(texture, f.u, f.v, 0.5F * CoarseLog2(major2) + lod_bias);
   }
   const int probes =
       std::min(max_probes, static_cast<int>(std::ceil(std::sqrt(major2 / covered2))));
   const auto count = static_cast<float>(probes);
-  const float lod = 0.5F * CoarseLog2(std::max(minor2, major2 / (count * count)));
+  const float lod = 0.5F * CoarseLog2(std::max(minor2, major2 / (count * count))) + lod_bias;
   // The direction along: eigenvector of the greater eigenvalue, by the better conditioned row.
   float along_u = half_difference >= 0.0F ? root + half_difference : uv;
   float along_v = half_difference >= 0.0F ? uv : root - half_difference;
@@ -100,6 +101,26 @@ struct TextureFootprint {
     sum += SampleTrilinear(texture, f.u + place * along_u, f.v + place * along_v, lod);
   }
   return sum / count;
+}
+
+/// The same by 2 x 2 samples of half the extent, each three quarters of a level softer. One sample
+/// a pixel leaves the detail between one and two texels of the finer level to chance: a sharp
+/// border wanders by up to 0.05 px with its place among the pixels. Here it stays within 0.02 px,
+/// and fine detail has about the contrast that it has with one sample: 0.28 at half a cycle a
+/// pixel, as through a good lens (the bare pixel has 0.64).
+[[nodiscard]] inline float SampleFootprintByFour(const Texture& texture, const TextureFootprint& f,
+                                                 int max_probes) {
+  TextureFootprint quarter = {
+      f.u, f.v, 0.5F * f.u_by_x, 0.5F * f.v_by_x, 0.5F * f.u_by_y, 0.5F * f.v_by_y};
+  float sum = 0.0F;
+  for (const float x : {-0.25F, 0.25F}) {
+    for (const float y : {-0.25F, 0.25F}) {
+      quarter.u = f.u + x * f.u_by_x + y * f.u_by_y;
+      quarter.v = f.v + x * f.v_by_x + y * f.v_by_y;
+      sum += SampleFootprint(texture, quarter, max_probes, 0.75F);
+    }
+  }
+  return 0.25F * sum;
 }
 
 }  // namespace duet

@@ -81,7 +81,8 @@ int TileRenderer::NearestOf(const Sight& sight, const Eigen::Vector2f& ray) {
 }
 
 float TileRenderer::Shade(const Sight& sight, int candidate, const Eigen::Vector2f& ray,
-                          const Eigen::Vector2f& by_u, const Eigen::Vector2f& by_v) const {
+                          const Eigen::Vector2f& by_u, const Eigen::Vector2f& by_v,
+                          bool four_samples) const {
   const PlaneView& view = sight.views[candidate];
   const int surface = sight.band.candidates()[static_cast<std::size_t>(candidate)].surface;
   const Material& material = materials_[static_cast<std::size_t>(surface)];
@@ -100,7 +101,10 @@ float TileRenderer::Shade(const Sight& sight, int candidate, const Eigen::Vector
                                       scale * v_slope.dot(by_u),
                                       scale * u_slope.dot(by_v),
                                       scale * v_slope.dot(by_v)};
-  return material.brightness * SampleFootprint(*material.texture, footprint, sampling_.max_probes);
+  const float value =
+      four_samples ? SampleFootprintByFour(*material.texture, footprint, sampling_.max_probes)
+                   : SampleFootprint(*material.texture, footprint, sampling_.max_probes);
+  return material.brightness * value;
 }
 
 float TileRenderer::ShadeEdge(const Sight& sight, const PixelRays& rays, int samples,
@@ -121,7 +125,7 @@ float TileRenderer::ShadeEdge(const Sight& sight, const PixelRays& rays, int sam
     if (nearest == kNothing) {
       ++nothing;
     } else {
-      sum += Shade(sight, nearest, ray, by_u, by_v);
+      sum += Shade(sight, nearest, ray, by_u, by_v, false);
     }
   }
   *empty += static_cast<double>(nothing) / lattice.points;
@@ -161,7 +165,7 @@ void TileRenderer::Render(const BandGeometry& band, int instants, const Tile& ti
         if (edge) {
           sum += ShadeEdge(sight, rays, edge_samples, &empty);
         } else if (seen != kNothing) {
-          sum += Shade(sight, seen, rays.center, rays.ByU(), rays.ByV());
+          sum += Shade(sight, seen, rays.center, rays.ByU(), rays.ByV(), sampling_.four_samples);
         } else {
           empty += 1.0;
         }

@@ -55,7 +55,8 @@ class TileRenderer {
   };
   static int NearestOf(const Sight& sight, const Eigen::Vector2f& ray);
   [[nodiscard]] float Shade(const Sight& sight, int candidate, const Eigen::Vector2f& ray,
-                            const Eigen::Vector2f& by_u, const Eigen::Vector2f& by_v) const;
+                            const Eigen::Vector2f& by_u, const Eigen::Vector2f& by_v,
+                            bool four_samples) const;
   [[nodiscard]] float ShadeEdge(const Sight& sight, const PixelRays& rays, int samples,
                                 double* empty) const;
 
