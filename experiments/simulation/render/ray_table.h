@@ -1,11 +1,22 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
 #include <vector>
 
 #include "common/camera/camera_model.h"
 
 namespace duet {
+
+/// A rectangle of pixels.
+struct Tile {
+  int u = 0, v = 0;  ///< first pixel
+  int width = 0, height = 0;
+};
+
+/// Rays (x, y) of a part of the image: all of its rays lie in the box.
+using RayBox = Eigen::AlignedBox2f;
 
 /// The rays of a pixel and how they change over it. Rays are (x, y) of the direction (x, y, 1).
 struct PixelRays {
@@ -47,6 +58,8 @@ class RayTable {
     return {centers_[Index(u, v, width_)], corners_[low], corners_[low + 1], corners_[high],
             corners_[high + 1]};
   }
+  /// The box of a tile's rays, widened by a pixel; empty where no pixel of it is valid.
+  [[nodiscard]] RayBox BoxOf(const Tile& tile) const;
 
  private:
   static std::size_t Index(int u, int v, int width) {

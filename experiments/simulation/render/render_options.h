@@ -10,7 +10,7 @@ enum class RenderQuality { kFast, kAccurate };
 /// Numbers behind a quality. Geometry is equally exact in both.
 struct RenderSampling {
   int edge_samples;            ///< in a pixel in which surfaces meet
-  bool four_samples;           ///< of a texture a pixel (SampleFootprintByFour), else one
+  bool four_samples;           ///< of a texture a pixel (TextureSampler::OverByFour), else one
   int max_probes;              ///< along a stretched footprint in a texture, a sample
   double blur_samples_per_px;  ///< instants within the exposure, per pixel of motion
   int max_blur_samples;
@@ -21,7 +21,7 @@ struct RenderSampling {
     return {.edge_samples = 13,
             .four_samples = false,
             .max_probes = 2,
-            .blur_samples_per_px = 1.0,
+            .blur_samples_per_px = 0.75,
             .max_blur_samples = 8};
   }
   return {.edge_samples = 55,

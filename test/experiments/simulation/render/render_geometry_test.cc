@@ -130,7 +130,7 @@ TEST_P(RenderedEdges, InATextureIsWhereTheCameraModelPutsIt) {
       const double y = 1.0 - border_m;
       const EdgeErrors errors = CompareEdge(rendered.image, rig_, *motion_, stamp_, 2.0, y, false);
       // The border as a whole, and single rows: with their place among texels and pixels these
-      // differ a little, with one sample a pixel more (SampleFootprintByFour).
+      // differ a little, with one sample a pixel more (TextureSampler::OverByFour).
       const bool accurate = GetParam().quality == RenderQuality::kAccurate;
       EXPECT_LT(std::abs(errors.mean), accurate ? 0.01 : 0.04) << texel_m << " " << border_m;
       EXPECT_LT(errors.rms, accurate ? 0.025 : 0.05) << texel_m << " " << border_m;

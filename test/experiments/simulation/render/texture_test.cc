@@ -37,7 +37,7 @@ TEST(Texture, NoLevelIsShifted) {
   for (float lod = 0.0F; lod <= 5.0F; lod += 0.25F) {
     for (const float u : {70.3F, 128.0F, 171.9F}) {
       for (const float v : {80.1F, 150.7F}) {
-        const float value = SampleTrilinear(texture, u, v, lod);
+        const float value = TextureSampler(texture).Trilinear(u, v, lod);
         // A shift by half a texel of level 5 would be 8 grey levels. Rounding to whole levels costs
         // up to half a level.
         EXPECT_NEAR(value, 20.0F + 0.5F * u + 0.25F * v, 0.51F) << "lod " << lod;
@@ -65,10 +65,10 @@ TEST(Texture, MeanIsKeptOverLevels) {
 
 TEST(Texture, EdgeTexelsGoOn) {
   const Texture texture(2, 2, 0.01, {10, 20, 30, 40});
-  EXPECT_FLOAT_EQ(SampleTrilinear(texture, -5.0F, -5.0F, 0.0F), 10.0F);
-  EXPECT_FLOAT_EQ(SampleTrilinear(texture, 99.0F, 0.5F, 0.0F), 20.0F);
-  EXPECT_FLOAT_EQ(SampleTrilinear(texture, 1.0F, 99.0F, 0.0F), 35.0F);
-  EXPECT_FLOAT_EQ(SampleTrilinear(texture, 99.0F, 99.0F, 12.0F), 25.0F);
+  EXPECT_FLOAT_EQ(TextureSampler(texture).Trilinear(-5.0F, -5.0F, 0.0F), 10.0F);
+  EXPECT_NEAR(TextureSampler(texture).Trilinear(99.0F, 0.5F, 0.0F), 20.0F, 0.01F);
+  EXPECT_NEAR(TextureSampler(texture).Trilinear(1.0F, 99.0F, 0.0F), 35.0F, 0.01F);
+  EXPECT_FLOAT_EQ(TextureSampler(texture).Trilinear(99.0F, 99.0F, 12.0F), 25.0F);
 }
 
 // The filter is centred whatever the footprint's shape: the mean of a slope is its middle's value.
@@ -84,7 +84,7 @@ TEST(Texture, FootprintsAreCentred) {
     f.u_by_y = static_cast<float>(random.Normal());
     f.v_by_y = static_cast<float>(random.Normal());
     for (const int probes : {1, 2, 16}) {
-      EXPECT_NEAR(SampleFootprint(texture, f, probes), 20.0F + 0.3F * f.u + 0.2F * f.v, 0.6F);
+      EXPECT_NEAR(TextureSampler(texture).Over(f, probes), 20.0F + 0.3F * f.u + 0.2F * f.v, 0.6F);
     }
   }
 }
@@ -97,8 +97,8 @@ TEST(Texture, ProbesKeepDetailAcrossAStretchedFootprint) {
   }
   const Texture texture(256, 256, 0.01, std::move(texels));
   const TextureFootprint on_stripe = {128.0F, 130.0F, 12.0F, 0.0F, 0.0F, 1.0F};
-  EXPECT_NEAR(SampleFootprint(texture, on_stripe, 16), 50.0F, 2.0F);
-  EXPECT_GT(SampleFootprint(texture, on_stripe, 1), 100.0F);
+  EXPECT_NEAR(TextureSampler(texture).Over(on_stripe, 16), 50.0F, 2.0F);
+  EXPECT_GT(TextureSampler(texture).Over(on_stripe, 1), 100.0F);
 }
 
 TEST(Texture, CoarseLog2) {
