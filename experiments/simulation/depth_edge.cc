@@ -1,5 +1,6 @@
 #include "experiments/simulation/depth_edge.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -11,6 +12,9 @@ namespace {
 // Depths along the optical axis that differ by less than this share are no jump (a poster on a
 // wall).
 constexpr double kSmallJump = 0.005;
+
+// A ray that goes through the very border of two surfaces.
+constexpr double kTouching = 1e-9;
 
 struct Look {
   Eigen::Vector3d ray_C;  // (x, y, 1)
@@ -47,6 +51,7 @@ class Caster {
     const double at_a = PlaneInverseDepth(b.surface, a.ray_C) * a.depth_m - 1.0;
     const double at_b = 1.0 - PlaneInverseDepth(a.surface, b.ray_C) * b.depth_m;
     if (std::abs(at_a) < kSmallJump && std::abs(at_b) < kSmallJump) return false;
+    if (std::min(std::abs(at_a), std::abs(at_b)) < kTouching) return false;
     return (at_a > 0.0) == (at_b > 0.0);
   }
 

@@ -7,12 +7,10 @@
 #include <vector>
 
 #include "experiments/simulation/render/plane_view.h"
+#include "experiments/simulation/render/ray_table.h"
 #include "experiments/simulation/render/true_camera.h"
 
 namespace duet {
-
-/// Rays (x, y) of a part of the image: all of its rays lie in the box.
-using RayBox = Eigen::AlignedBox2f;
 
 /// Some lines of an image that are read one after the other, and the instants within the exposure
 /// of each.

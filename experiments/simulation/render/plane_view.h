@@ -11,6 +11,9 @@ namespace duet {
 /// depth q = w'd and the place u = a'd / q, v = b'd / q on the surface [m]. With the plane n'p = h,
 /// the axes e and the corner c, all in C: w = n / h, a = e_u - (e_u'c) w, b = e_v - (e_v'c) w.
 struct PlaneView {
+  /// Surfaces that share a border overlap by this, so that rounding opens no gap between them.
+  static constexpr float kSlack_m = 5e-6F;
+
   Eigen::Vector3f a = Eigen::Vector3f::Zero();
   Eigen::Vector3f b = Eigen::Vector3f::Zero();
   Eigen::Vector3f w = Eigen::Vector3f::Zero();  ///< zero where its back is seen: never hit
@@ -25,7 +28,8 @@ struct PlaneView {
   [[nodiscard]] bool Within(const Eigen::Vector2f& ray, float q) const {
     const float u = Dot(a, ray);
     const float v = Dot(b, ray);
-    return u >= 0.0F && v >= 0.0F && u <= width_m * q && v <= height_m * q;
+    const float slack = kSlack_m * q;
+    return u >= -slack && v >= -slack && u <= width_m * q + slack && v <= height_m * q + slack;
   }
 };
 

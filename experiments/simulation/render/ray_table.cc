@@ -35,4 +35,26 @@ RayTable::RayTable(const CameraModel& model)
   }
 }
 
+RayBox RayTable::BoxOf(const Tile& tile) const {
+  RayBox box;
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  // the greatest extent of one
+  for (int v = tile.v; v < tile.v + tile.height; ++v) {
+    for (int u = tile.u; u < tile.u + tile.width; ++u) {
+      if (!valid(u, v)) continue;
+      const PixelRays pixel_rays = At(u, v);
+      RayBox extent(pixel_rays.low_low);
+      extent.extend(pixel_rays.high_low);
+      extent.extend(pixel_rays.low_high);
+      extent.extend(pixel_rays.high_high);
+      box.extend(extent);
+      pixel = pixel.cwiseMax(extent.sizes());
+    }
+  }
+  if (!box.isEmpty()) {
+    box.min() -= pixel;
+    box.max() += pixel;
+  }
+  return box;
+}
+
 }  // namespace duet

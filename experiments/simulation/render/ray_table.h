@@ -1,11 +1,22 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
 #include <vector>
 
 #include "common/camera/camera_model.h"
 
 namespace duet {
+
+/// A rectangle of pixels.
+struct Tile {
+  int u = 0, v = 0;  ///< first pixel
+  int width = 0, height = 0;
+};
+
+/// Rays (x, y) of a part of the image: all of its rays lie in the box.
+using RayBox = Eigen::AlignedBox2f;
 
 /// The rays of a pixel and how they change over it. Rays are (x, y) of the direction (x, y, 1).
 struct PixelRays {
@@ -20,7 +31,7 @@ struct PixelRays {
   }
   /// The ray `du`, `dv` in [-0.5, 0.5] px from the centre. Between the corners and the centre by a
   /// bilinear surface and a bump that is zero in the corners; the rest is of third order: below
-  /// 1e-3 px up to 70 degrees off the axis for focal lengths from 190 px on.
+  /// 2.5e-3 px up to 70 degrees off the axis for focal lengths from 95 px on.
   [[nodiscard]] Eigen::Vector2f At(float du, float dv) const {
     const float u = du + 0.5F;
     const float v = dv + 0.5F;
@@ -47,6 +58,8 @@ class RayTable {
     return {centers_[Index(u, v, width_)], corners_[low], corners_[low + 1], corners_[high],
             corners_[high + 1]};
   }
+  /// The box of a tile's rays, widened by a pixel; empty where no pixel of it is valid.
+  [[nodiscard]] RayBox BoxOf(const Tile& tile) const;
 
  private:
   static std::size_t Index(int u, int v, int width) {

@@ -10,16 +10,25 @@ enum class RenderQuality { kFast, kAccurate };
 /// Numbers behind a quality. Geometry is equally exact in both.
 struct RenderSampling {
   int edge_samples;            ///< in a pixel in which surfaces meet
-  int max_probes;              ///< along a stretched footprint in a texture
+  bool four_samples;           ///< of a texture a pixel (TextureSampler::OverByFour), else one
+  int max_probes;              ///< along a stretched footprint in a texture, a sample
   double blur_samples_per_px;  ///< instants within the exposure, per pixel of motion
   int max_blur_samples;
 };
 
 [[nodiscard]] inline RenderSampling RenderSamplingOf(RenderQuality quality) {
   if (quality == RenderQuality::kFast) {
-    return {.edge_samples = 13, .max_probes = 2, .blur_samples_per_px = 0.5, .max_blur_samples = 8};
+    return {.edge_samples = 13,
+            .four_samples = false,
+            .max_probes = 2,
+            .blur_samples_per_px = 0.75,
+            .max_blur_samples = 8};
   }
-  return {.edge_samples = 55, .max_probes = 16, .blur_samples_per_px = 2.0, .max_blur_samples = 48};
+  return {.edge_samples = 55,
+          .four_samples = true,
+          .max_probes = 8,
+          .blur_samples_per_px = 1.5,
+          .max_blur_samples = 48};
 }
 
 /// From the light of a surface to a grey level (Photometry).

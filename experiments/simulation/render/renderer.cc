@@ -15,13 +15,31 @@ constexpr std::uint64_t kNoiseStream = 0x6e6f697365;
 
 }  // namespace
 
+Renderer::View::View(const CameraModel& model, bool by_columns) : rays(model) {
+  const int lines = by_columns ? rays.width_px() : rays.height_px();
+  const int across = by_columns ? rays.height_px() : rays.width_px();
+  for (int first = 0; first < lines; first += kTile_px) {
+    Band band;
+    band.first_line = first;
+    band.line_count = std::min(kTile_px, lines - first);
+    for (int start = 0; start < across; start += kTile_px) {
+      const int count = std::min(kTile_px, across - start);
+      const Tile tile = by_columns ? Tile{first, start, band.line_count, count}
+                                   : Tile{start, first, count, band.line_count};
+      band.tiles.push_back({tile, rays.BoxOf(tile)});
+      band.rays.extend(band.tiles.back().rays);
+    }
+    bands.push_back(std::move(band));
+  }
+}
+
 Renderer::Renderer(const RenderOptions& options, TrueCamera camera)
     : options_(options),
       sampling_(RenderSamplingOf(options.quality)),
       camera_(std::move(camera)),
       gain_(options.photometry, &camera_, options.seed) {
   for (const CameraCalibration& calibration : camera_.rig().cameras) {
-    auto view = std::make_unique<View>(calibration.model);
+    auto view = std::make_unique<View>(calibration.model, camera_.rig().readout_by_columns);
     view->vignetting = VignettingTable(calibration.model, options.photometry.vignetting);
     view->tiles = std::make_unique<TileRenderer>(camera_.world(), view->rays, sampling_,
                                                  camera_.rig().readout_by_columns);
@@ -62,39 +80,32 @@ RenderedImage Renderer::Render(int camera, Timestamp stamp) const {
   const View& view = *views_[static_cast<std::size_t>(camera)];
   const int width = view.rays.width_px();
   const int height = view.rays.height_px();
-  const bool by_columns = camera_.rig().readout_by_columns;
   RenderedImage result;
   result.gain = gain_.GainAt(camera, stamp);
   if (options_.exposure_s > 0.0) {
-    const double wanted = std::ceil(sampling_.blur_samples_per_px * LargestBlur(camera, stamp));
+    const double wanted = std::round(sampling_.blur_samples_per_px * LargestBlur(camera, stamp));
     result.blur_instants =
         static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(sampling_.max_blur_samples)));
   }
 
   // Light, band by band of lines that are read together.
   std::vector<float> light(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  const int lines = by_columns ? width : height;
-  const int across = by_columns ? height : width;
-  const int bands = (lines + kTile_px - 1) / kTile_px;
-  std::vector<PixelCounts> counts(static_cast<std::size_t>(bands));
-  ParallelFor(bands, options_.threads, [&](int index) {
-    BandShutter shutter{.camera = camera,
-                        .stamp = stamp,
-                        .first_line = index * kTile_px,
-                        .line_count = std::min(kTile_px, lines - index * kTile_px),
-                        .exposure_s = options_.exposure_s,
-                        .instants = result.blur_instants};
-    const auto tile_at = [&](int first, int count) {
-      return by_columns ? Tile{shutter.first_line, first, shutter.line_count, count}
-                        : Tile{first, shutter.first_line, count, shutter.line_count};
-    };
-    const RayBox rays = RaysOf(view.rays, tile_at(0, across));
-    if (rays.isEmpty()) return;  // the light stays 0
-    const BandGeometry band(camera_, shutter, rays);
+  std::vector<PixelCounts> counts(view.bands.size());
+  ParallelFor(static_cast<int>(view.bands.size()), options_.threads, [&](int index) {
+    const View::Band& lines = view.bands[static_cast<std::size_t>(index)];
+    if (lines.rays.isEmpty()) return;  // the light stays 0
+    const BandGeometry band(camera_,
+                            {.camera = camera,
+                             .stamp = stamp,
+                             .first_line = lines.first_line,
+                             .line_count = lines.line_count,
+                             .exposure_s = options_.exposure_s,
+                             .instants = result.blur_instants},
+                            lines.rays);
     TileCandidates scratch;
-    for (int first = 0; first < across; first += kTile_px) {
-      view.tiles->Render(band, shutter.instants, tile_at(first, std::min(kTile_px, across - first)),
-                         &scratch, light.data(), &counts[static_cast<std::size_t>(index)]);
+    for (const View::TileView& tile : lines.tiles) {
+      view.tiles->Render(band, result.blur_instants, tile.tile, tile.rays, &scratch, light.data(),
+                         &counts[static_cast<std::size_t>(index)]);
     }
   });
   PixelCounts total;

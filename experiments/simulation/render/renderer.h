@@ -43,10 +43,24 @@ class Renderer {
   // How far the image moves within the exposure at the most, px.
   [[nodiscard]] double LargestBlur(int camera, Timestamp stamp) const;
 
+  // What is made once a camera.
   struct View {
-    explicit View(const CameraModel& model) : rays(model) {}
+    struct TileView {
+      Tile tile;
+      RayBox rays;
+    };
+    // Lines that are read together, and the tiles in them.
+    struct Band {
+      int first_line, line_count;
+      RayBox rays;
+      std::vector<TileView> tiles;
+    };
+
+    View(const CameraModel& model, bool by_columns);
+
     RayTable rays;
     std::vector<float> vignetting;
+    std::vector<Band> bands;
     std::unique_ptr<TileRenderer> tiles;
   };
 

@@ -4,7 +4,6 @@
 #include <array>
 
 #include "common/support/logging.h"
-#include "experiments/simulation/render/texture_sampler.h"
 
 namespace duet {
 namespace {
@@ -28,38 +27,18 @@ Lattice LatticeOf(int points) {
 
 }  // namespace
 
-RayBox RaysOf(const RayTable& rays, const Tile& tile) {
-  RayBox box;
-  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  // the greatest extent of one
-  for (int v = tile.v; v < tile.v + tile.height; ++v) {
-    for (int u = tile.u; u < tile.u + tile.width; ++u) {
-      if (!rays.valid(u, v)) continue;
-      const PixelRays pixel_rays = rays.At(u, v);
-      RayBox extent(pixel_rays.low_low);
-      extent.extend(pixel_rays.high_low);
-      extent.extend(pixel_rays.low_high);
-      extent.extend(pixel_rays.high_high);
-      box.extend(extent);
-      pixel = pixel.cwiseMax(extent.sizes());
-    }
-  }
-  if (!box.isEmpty()) {
-    box.min() -= pixel;
-    box.max() += pixel;
-  }
-  return box;
-}
-
 TileRenderer::TileRenderer(const World& world, const RayTable& rays, const RenderSampling& sampling,
                            bool by_columns)
     : rays_(rays), sampling_(sampling), by_columns_(by_columns) {
+  for (const Texture& texture : world.textures()) textures_.emplace_back(texture);
   for (const Surface& surface : world.surfaces()) {
     CHECK_GE(surface.texture, 0);
     CHECK_LT(surface.texture, static_cast<int>(world.textures().size()))
         << "world " << world.name() << " was made without textures";
     const Texture& texture = world.textures()[static_cast<std::size_t>(surface.texture)];
     const double per_m = 1.0 / texture.texel_m();
-    materials_.push_back({&texture, static_cast<float>(per_m),
+    materials_.push_back({&textures_[static_cast<std::size_t>(surface.texture)],
+                          static_cast<float>(per_m),
                           static_cast<float>(per_m * surface.texture_origin_m.x()),
                           static_cast<float>(per_m * surface.texture_origin_m.y()),
                           static_cast<float>(surface.brightness)});
@@ -81,7 +60,8 @@ int TileRenderer::NearestOf(const Sight& sight, const Eigen::Vector2f& ray) {
 }
 
 float TileRenderer::Shade(const Sight& sight, int candidate, const Eigen::Vector2f& ray,
-                          const Eigen::Vector2f& by_u, const Eigen::Vector2f& by_v) const {
+                          const Eigen::Vector2f& by_u, const Eigen::Vector2f& by_v,
+                          bool four_samples) const {
   const PlaneView& view = sight.views[candidate];
   const int surface = sight.band.candidates()[static_cast<std::size_t>(candidate)].surface;
   const Material& material = materials_[static_cast<std::size_t>(surface)];
@@ -100,7 +80,10 @@ float TileRenderer::Shade(const Sight& sight, int candidate, const Eigen::Vector
                                       scale * v_slope.dot(by_u),
                                       scale * u_slope.dot(by_v),
                                       scale * v_slope.dot(by_v)};
-  return material.brightness * SampleFootprint(*material.texture, footprint, sampling_.max_probes);
+  const TextureSampler& texture = *material.texture;
+  const float value = four_samples ? texture.OverByFour(footprint, sampling_.max_probes)
+                                   : texture.Over(footprint, sampling_.max_probes);
+  return material.brightness * value;
 }
 
 float TileRenderer::ShadeEdge(const Sight& sight, const PixelRays& rays, int samples,
@@ -121,7 +104,7 @@ float TileRenderer::ShadeEdge(const Sight& sight, const PixelRays& rays, int sam
     if (nearest == kNothing) {
       ++nothing;
     } else {
-      sum += Shade(sight, nearest, ray, by_u, by_v);
+      sum += Shade(sight, nearest, ray, by_u, by_v, false);
     }
   }
   *empty += static_cast<double>(nothing) / lattice.points;
@@ -129,12 +112,12 @@ float TileRenderer::ShadeEdge(const Sight& sight, const PixelRays& rays, int sam
 }
 
 void TileRenderer::Render(const BandGeometry& band, int instants, const Tile& tile,
-                          TileCandidates* scratch, float* light, PixelCounts* counts) const {
-  const RayBox view = RaysOf(rays_, tile);
+                          const RayBox& view, TileCandidates* scratch, float* light,
+                          PixelCounts* counts) const {
   if (!view.isEmpty()) {
     FindTileCandidates(band, view, scratch);
   } else {
-    scratch->list.clear();
+    *scratch = {};
   }
   const int edge_samples = (sampling_.edge_samples + instants - 1) / instants;
   const float share = 1.0F / static_cast<float>(instants);
@@ -161,7 +144,7 @@ void TileRenderer::Render(const BandGeometry& band, int instants, const Tile& ti
         if (edge) {
           sum += ShadeEdge(sight, rays, edge_samples, &empty);
         } else if (seen != kNothing) {
-          sum += Shade(sight, seen, rays.center, rays.ByU(), rays.ByV());
+          sum += Shade(sight, seen, rays.center, rays.ByU(), rays.ByV(), sampling_.four_samples);
         } else {
           empty += 1.0;
         }

@@ -5,17 +5,9 @@
 #include "experiments/simulation/render/band_geometry.h"
 #include "experiments/simulation/render/ray_table.h"
 #include "experiments/simulation/render/render_options.h"
+#include "experiments/simulation/render/texture_sampler.h"
 
 namespace duet {
-
-/// A rectangle of pixels.
-struct Tile {
-  int u = 0, v = 0;  ///< first pixel
-  int width = 0, height = 0;
-};
-
-/// The box of a tile's rays, widened by a pixel; empty where no pixel of it is valid.
-[[nodiscard]] RayBox RaysOf(const RayTable& rays, const Tile& tile);
 
 /// How much of an image shows something.
 struct PixelCounts {
@@ -35,14 +27,15 @@ class TileRenderer {
                bool by_columns);
 
   /// The light (grey levels at gain 1) of the tile's pixels, the mean over the instants, into
-  /// `light`, an image by rows of the camera's size. Pixels without a ray get 0.
-  void Render(const BandGeometry& band, int instants, const Tile& tile, TileCandidates* scratch,
-              float* light, PixelCounts* counts) const;
+  /// `light`, an image by rows of the camera's size. Pixels without a ray get 0. `view`: the tile's
+  /// RayTable::BoxOf.
+  void Render(const BandGeometry& band, int instants, const Tile& tile, const RayBox& view,
+              TileCandidates* scratch, float* light, PixelCounts* counts) const;
 
  private:
   // How a surface shines.
   struct Material {
-    const Texture* texture;
+    const TextureSampler* texture;
     float texels_per_m;
     float origin_u, origin_v;  // texels
     float brightness;
@@ -55,13 +48,15 @@ class TileRenderer {
   };
   static int NearestOf(const Sight& sight, const Eigen::Vector2f& ray);
   [[nodiscard]] float Shade(const Sight& sight, int candidate, const Eigen::Vector2f& ray,
-                            const Eigen::Vector2f& by_u, const Eigen::Vector2f& by_v) const;
+                            const Eigen::Vector2f& by_u, const Eigen::Vector2f& by_v,
+                            bool four_samples) const;
   [[nodiscard]] float ShadeEdge(const Sight& sight, const PixelRays& rays, int samples,
                                 double* empty) const;
 
   const RayTable& rays_;
   RenderSampling sampling_;
   bool by_columns_;
+  std::vector<TextureSampler> textures_;
   std::vector<Material> materials_;  // one a surface
 };
 

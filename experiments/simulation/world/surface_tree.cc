@@ -11,6 +11,8 @@ namespace {
 // Boxes of flat rectangles have no thickness; this much keeps a ray within the rectangle's plane,
 // or one that hits it at its border, from missing its box by rounding.
 constexpr double kBoxMargin_m = 1e-6;
+// Rectangles that share a border overlap by this, so that rounding opens no gap between them.
+constexpr double kSlack_m = 1e-9;
 constexpr int kMaxDepth = 256;
 
 double Area(const Eigen::AlignedBox3d& box) {
@@ -110,7 +112,8 @@ void SurfaceTree::Test(const Rectangle& rectangle, const Eigen::Vector3d& origin
   const Eigen::Vector3d on_surface = distance * direction - to_corner;
   const double u = rectangle.u_axis.dot(on_surface);
   const double v = rectangle.v_axis.dot(on_surface);
-  if (u < 0.0 || v < 0.0 || u > rectangle.width_m || v > rectangle.height_m) return;
+  if (u < -kSlack_m || v < -kSlack_m) return;
+  if (u > rectangle.width_m + kSlack_m || v > rectangle.height_m + kSlack_m) return;
   hit->distance_m = distance;
   hit->surface = rectangle.index;
   hit->uv_m = {u, v};
