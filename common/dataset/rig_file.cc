@@ -24,7 +24,8 @@ RigFile ReadFolder(const fs::path& folder) {
     }
   }
   if (rig.cameras.empty()) {
-    throw InputError(mav.string(), 0, "", "has no cam0/sensor.yaml; expected a recording's sensors");
+    throw InputError(mav.string(), 0, "",
+                     "has no cam0/sensor.yaml; expected a recording's sensors");
   }
   return rig;
 }
@@ -40,11 +41,13 @@ RigFile ReadRigFile(const fs::path& path) {
   rig.imu = ReadImuSensor(map.Map("imu0"), &unknown_keys);
   rig.cameras.push_back(ReadCameraSensor(map.Map("cam0"), &unknown_keys));
   if (map.Has("cam1")) rig.cameras.push_back(ReadCameraSensor(map.Map("cam1"), &unknown_keys));
-  for (const std::string& key : map.UnknownKeys()) unknown_keys.push_back(path.string() + ": " + key);
+  for (const std::string& key : map.UnknownKeys())
+    unknown_keys.push_back(path.string() + ": " + key);
   if (!unknown_keys.empty()) {
     throw InputError(path.string(), 0, "",
-                     "unknown key (" + unknown_keys.front() + "); expected imu0, cam0 and cam1 with "
-                     "the keys of a sensor.yaml");
+                     "unknown key (" + unknown_keys.front() +
+                         "); expected imu0, cam0 and cam1 with "
+                         "the keys of a sensor.yaml");
   }
   return rig;
 }

@@ -302,26 +302,6 @@ RecordedMotion LoadRecordedMotion(const std::filesystem::path& folder,
   return FollowRecording(LoadRecording(folder, none), name.filename().string(), options);
 }
 
-SimulatedRecording SimulateAlong(const RecordedMotion& motion, const SimulationOptions& options) {
-  SimulatedRecording recording = Simulate(options, motion.trajectory);
-  const Timestamp shift = motion.start - recording.start;
-  for (TrackFrameSet& set : recording.frames) {
-    set.timestamp += shift;
-    for (TrackFrame& frame : set.frames) frame.timestamp += shift;
-  }
-  recording.start = motion.start;
-  recording.imu = motion.imu;
-  recording.truth = motion.states;
-  recording.noise = motion.imu_sensor.noise;
-  recording.g_G = {0.0, 0.0, -motion.imu_sensor.gravity};
-  recording.true_rig.imu = motion.imu_sensor.calibration;
-  recording.told_rig.imu = motion.imu_sensor.calibration;
-  recording.dropped_imu_samples = 0;
-  recording.clipped_gyroscope_samples = 0;
-  recording.clipped_accelerometer_samples = 0;
-  return recording;
-}
-
 std::string RecordedMotionText(const RecordedMotionReport& report, Timestamp start,
                                bool all_jumps) {
   std::string text = report.label + "\n";

@@ -10,7 +10,6 @@
 #include "common/geometry/pose_jumps.h"
 #include "common/imu/inertial_truth_fit.h"
 #include "common/imu/nav_state.h"
-#include "experiments/simulation/simulator.h"
 #include "experiments/simulation/spline_trajectory.h"
 
 namespace duet {
@@ -98,11 +97,6 @@ struct RecordedMotion {
 /// The same from an ASL folder; its name is the folder's.
 [[nodiscard]] RecordedMotion LoadRecordedMotion(const std::filesystem::path& folder,
                                                 const RecordedMotionOptions& options = {});
-
-/// A simulated recording along the motion, of which the IMU is the recorded one: noise densities,
-/// gravity and T matrices are its sensor.yaml's, whatever the options say of the IMU.
-[[nodiscard]] SimulatedRecording SimulateAlong(const RecordedMotion& motion,
-                                               const SimulationOptions& options);
 
 /// The report for a terminal; every jump with its time, offset and turn where `all_jumps`.
 [[nodiscard]] std::string RecordedMotionText(const RecordedMotionReport& report, Timestamp start,

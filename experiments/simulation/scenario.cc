@@ -31,6 +31,7 @@ ImuNoise Scaled(const ImuNoise& noise, double scale) {
 void SetSensors(const SimulationOptions& options, Scenario* scenario) {
   scenario->gravity_m_per_s2 = options.gravity_m_per_s2;
   scenario->imu_rate_hz = options.imu_rate_hz;
+  scenario->camera_rate_hz = options.camera_rate_hz;
   ImuNoise noise = {.gyroscope_density = options.gyroscope_density,
                     .accelerometer_density = options.accelerometer_density,
                     .gyroscope_random_walk = options.gyroscope_random_walk,
@@ -40,13 +41,15 @@ void SetSensors(const SimulationOptions& options, Scenario* scenario) {
   } else if (!options.sensors.empty()) {
     RigFile file = ReadRigFile(options.sensors);
     if (static_cast<int>(file.cameras.size()) < options.cameras) {
-      throw InputError(options.sensors, 0, "",
-                       "has one camera; expected two (simulation.cameras)");
+      throw InputError(options.sensors, 0, "", "has one camera; expected two (simulation.cameras)");
     }
     file.cameras.resize(static_cast<std::size_t>(options.cameras));
     scenario->true_rig = MakeRig(file.imu.calibration, file.cameras, options.sensors);
     scenario->gravity_m_per_s2 = file.imu.gravity;
     if (file.imu.rate_hz > 0.0) scenario->imu_rate_hz = file.imu.rate_hz;
+    if (file.cameras.front().rate_hz > 0.0) {
+      scenario->camera_rate_hz = file.cameras.front().rate_hz;
+    }
     noise = file.imu.noise;
   } else {
     scenario->true_rig = EurocLikeRig(options.cameras);
@@ -73,29 +76,32 @@ Box BoxOfPath(const Trajectory& trajectory, double duration_s) {
 struct Placement {
   double yaw_rad = 0.0;
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
-  double scale = 1.0;  ///< by which the flight space must grow
+  double world_scale = 1.0;
 };
 
 // The middle of the path's box into the middle of the flight space, turned by a quarter where that
-// needs less of it.
-Placement Place(const Box& path, const FlightSpace& space) {
+// needs a smaller world.
+Placement Place(const Box& path, const SimulationOptions& options) {
+  const FlightSpace space = FlightSpaceOf(options.world);
   const Eigen::Vector3d room = space.high - space.low;
   const Eigen::Vector3d size = path.high - path.low;
-  const Eigen::Vector3d middle = 0.5 * (path.low + path.high);
-  Placement best;
-  best.scale = 1e9;
-  for (int quarter = 0; quarter < 2; ++quarter) {
-    const Eigen::Vector3d turned =
-        quarter == 0 ? size : Eigen::Vector3d(size.y(), size.x(), size.z());
-    const double scale = std::max(1.0, turned.cwiseQuotient(room).maxCoeff());
-    if (scale >= best.scale) continue;
-    best.scale = scale;
-    best.yaw_rad = 0.5 * std::numbers::pi * quarter;
-    const Eigen::Vector3d middle_turned =
-        quarter == 0 ? middle : Eigen::Vector3d(-middle.y(), middle.x(), middle.z());
-    best.shift = 0.5 * scale * (space.low + space.high) - middle_turned;
+  const Eigen::Vector3d turned_size(size.y(), size.x(), size.z());
+  const double straight = size.cwiseQuotient(room).maxCoeff();
+  const double turned = turned_size.cwiseQuotient(room).maxCoeff();
+  const double needed = std::min(straight, turned);
+  if (options.world_scale > 0.0 && options.world_scale < needed) {
+    throw InputError("", 0, "world_scale",
+                     "the path does not fit into " + options.world + ": expected at least " +
+                         FormatNumber(std::ceil(100.0 * needed) / 100.0) +
+                         ", or 0 for a world as large as it takes");
   }
-  return best;
+  Placement placement;
+  placement.world_scale = options.world_scale > 0.0 ? options.world_scale : std::max(1.0, needed);
+  placement.yaw_rad = turned < straight ? 0.5 * std::numbers::pi : 0.0;
+  const Eigen::Vector3d middle = 0.5 * (path.low + path.high);
+  const Eigen::AngleAxisd yaw(placement.yaw_rad, Eigen::Vector3d::UnitZ());
+  placement.shift = 0.5 * placement.world_scale * (space.low + space.high) - yaw * middle;
+  return placement;
 }
 
 void PlaceRecorded(const PlacedTrajectory& placed, RecordedMotion* motion) {
@@ -107,85 +113,134 @@ void PlaceRecorded(const PlacedTrajectory& placed, RecordedMotion* motion) {
   }
 }
 
-// Sets trajectory, start and recorded; what the path needs of the world's size.
-double SetMotion(const SimulationOptions& options, Scenario* scenario) {
-  std::shared_ptr<const Trajectory> recorded;
-  if (!options.imu.empty()) {
-    scenario->recorded = LoadRecordedMotion(options.imu);
-    recorded = scenario->recorded->trajectory;
-    scenario->start = scenario->recorded->start;
-    scenario->noise = scenario->recorded->imu_sensor.noise;
-    scenario->gravity_m_per_s2 = scenario->recorded->imu_sensor.gravity;
-    scenario->true_rig.imu = scenario->recorded->imu_sensor.calibration;
-    scenario->label = scenario->recorded->report.label;
-  } else if (fs::exists(options.trajectory)) {
-    const auto spline = SplineThroughFile(options.trajectory, {});
-    recorded = spline;
-    scenario->start = spline->spline().start();
-    scenario->label = "simulated along " + fs::path(options.trajectory).filename().string();
+// What a recorded IMU brings along.
+void SetRecorded(RecordedMotion motion, Scenario* scenario) {
+  scenario->trajectory = motion.trajectory;
+  scenario->start = motion.start;
+  scenario->noise = motion.imu_sensor.noise;
+  scenario->gravity_m_per_s2 = motion.imu_sensor.gravity;
+  if (motion.imu_sensor.rate_hz > 0.0) scenario->imu_rate_hz = motion.imu_sensor.rate_hz;
+  scenario->true_rig.imu = motion.imu_sensor.calibration;
+  scenario->label = motion.report.label;
+  scenario->recorded = std::move(motion);
+}
+
+void SetNamedMotion(const SimulationOptions& options, Scenario* scenario) {
+  const NamedMotion& motion = FindMotion(options.trajectory);
+  if (options.duration_s <= 0.0 && motion.longest_s <= 0.0) {
+    throw InputError("", 0, "duration_s",
+                     "expected above 0 s: trajectory " + motion.name + " has no end");
   }
-  if (recorded == nullptr) {
-    const NamedMotion& motion = FindMotion(options.trajectory);
-    double duration_s = options.duration_s + 2.0 * kImuMargin_s;
-    if (options.duration_s <= 0.0) {
-      if (motion.longest_s <= 0.0) {
-        throw InputError("", 0, "duration_s",
-                         "expected above 0 s: trajectory " + motion.name + " has no end");
-      }
-      duration_s = motion.longest_s;
-    }
-    scenario->trajectory = MakeTrajectory(options.trajectory, duration_s, options.rest_s);
-    scenario->start = kEpoch;
-    scenario->label = "simulated: " + options.trajectory;
-    return 1.0;
-  }
-  if (options.world == kBoxWorld) {
-    scenario->trajectory = recorded;
-    return 1.0;
-  }
-  const double duration_s = options.duration_s > 0.0
-                                ? std::min(recorded->duration_s(), options.duration_s)
-                                : recorded->duration_s();
+  const double duration_s =
+      options.duration_s > 0.0 ? options.duration_s + 2.0 * kImuMargin_s : motion.longest_s;
+  scenario->trajectory = MakeTrajectory(options.trajectory, duration_s, options.rest_s);
+  scenario->start = kEpoch;
+  scenario->label = "simulated: " + options.trajectory;
+}
+
+// Moves a truth's trajectory into the world; returns the world's scale.
+double PlaceInWorld(const SimulationOptions& options, Scenario* scenario) {
+  const double duration_s = scenario->trajectory->duration_s();
   const Placement placement =
-      Place(BoxOfPath(*recorded, duration_s), FlightSpaceOf(options.world));
+      Place(BoxOfPath(*scenario->trajectory,
+                      options.duration_s > 0.0
+                          ? std::min(duration_s, options.duration_s + 2.0 * kImuMargin_s)
+                          : duration_s),
+            options);
   const auto placed =
-      std::make_shared<PlacedTrajectory>(recorded, placement.yaw_rad, placement.shift);
+      std::make_shared<PlacedTrajectory>(scenario->trajectory, placement.yaw_rad, placement.shift);
   scenario->trajectory = placed;
   if (scenario->recorded) PlaceRecorded(*placed, &*scenario->recorded);
-  return placement.scale;
+  return placement.world_scale;
+}
+
+void SetWorld(const SimulationOptions& options, bool textures, double scale, Scenario* scenario) {
+  if (options.world == kBoxWorld) {
+    scenario->label += ", points on the walls of a box";
+    return;
+  }
+  scenario->world = MakeWorld(options.world, {.seed = static_cast<std::uint64_t>(options.seed),
+                                              .textures = textures,
+                                              .moving_bodies = options.moving_bodies});
+  if (scale != 1.0) scenario->world = std::make_shared<World>(scenario->world->Scaled(scale));
+  scenario->scene = std::make_shared<WorldScene>(scenario->world);
+  scenario->label += ", world " + options.world;
+  if (scale != 1.0) {
+    scenario->label += " x " + FormatNumber(std::round(100.0 * scale) / 100.0);
+  }
+  if (options.moving_bodies) scenario->label += ", moving bodies";
+}
+
+// A box 2 m around the path.
+std::shared_ptr<const Scene> BoxAroundPath(const Trajectory& trajectory, double clutter_share) {
+  const Box path = BoxOfPath(trajectory, trajectory.duration_s());
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(2.0);
+  return std::make_shared<BoxScene>(path.low - margin, path.high + margin, clutter_share);
+}
+
+// A box like the walls around the flight space of a named motion's world.
+std::shared_ptr<const Scene> BoxOfMotion(const std::string& name, double clutter_share) {
+  const std::string& world = FindMotion(name).world;
+  if (world == "room") {
+    return std::make_shared<BoxScene>(Eigen::Vector3d(-4.5, -4.0, 0.0),
+                                      Eigen::Vector3d(4.5, 4.0, 3.2), clutter_share);
+  }
+  const FlightSpace space = FlightSpaceOf(world);
+  return std::make_shared<BoxScene>(Eigen::Vector3d(space.low.x() - 2.0, space.low.y() - 3.0, 0.0),
+                                    Eigen::Vector3d(space.high + Eigen::Vector3d(2.0, 3.0, 3.0)),
+                                    clutter_share);
+}
+
+// A truth's path is moved into its world; others are made for theirs.
+void AddWorldAroundTruth(const SimulationOptions& options, bool textures, Scenario* scenario) {
+  const bool has_world = options.world != kBoxWorld;
+  SetWorld(options, textures, has_world ? PlaceInWorld(options, scenario) : 1.0, scenario);
+  if (!has_world) scenario->scene = BoxAroundPath(*scenario->trajectory, options.clutter_share);
+}
+
+double ToldScale(const SimulationOptions& options) {
+  return options.world_scale > 0.0 ? options.world_scale : 1.0;
 }
 
 }  // namespace
 
 Scenario MakeScenario(const SimulationOptions& options, bool textures) {
-  if (options.cameras < 1 || options.cameras > 2) {
-    throw InputError("", 0, "cameras", "expected 1 or 2");
+  if (!options.imu.empty()) {
+    return MakeScenario(options, LoadRecordedMotion(options.imu), textures);
   }
-  if (options.world != kBoxWorld) CheckWorldName(options.world);
   Scenario scenario;
   SetSensors(options, &scenario);
-  const double needed_scale = SetMotion(options, &scenario);
-  if (options.world == kBoxWorld) {
-    scenario.label += ", points on the walls of a box";
+  if (fs::exists(options.trajectory)) {
+    const auto spline = SplineThroughFile(options.trajectory);
+    scenario.trajectory = spline;
+    scenario.start = spline->spline().start();
+    scenario.label = "simulated along " + fs::path(options.trajectory).filename().string();
+    AddWorldAroundTruth(options, textures, &scenario);
     return scenario;
   }
-  if (options.world_scale > 0.0 && options.world_scale < needed_scale) {
-    throw InputError("", 0, "world_scale",
-                     "the path does not fit into " + options.world + ": expected at least " +
-                         FormatNumber(std::ceil(100.0 * needed_scale) / 100.0) +
-                         ", or 0 for a world as large as it takes");
-  }
-  // Whatever the path was placed for; a larger world has its middle elsewhere than its floor.
-  const double scale = options.world_scale > 0.0 ? options.world_scale : needed_scale;
-  scenario.world = MakeWorld(options.world, {.seed = static_cast<std::uint64_t>(options.seed),
-                                             .textures = textures,
-                                             .scale = scale,
-                                             .moving_bodies = options.moving_bodies});
-  scenario.label += ", world " + options.world;
-  if (scale != 1.0) {
-    scenario.label += " (x " + FormatNumber(std::round(100.0 * scale) / 100.0) + ")";
-  }
-  if (options.moving_bodies) scenario.label += " with moving bodies";
+  SetNamedMotion(options, &scenario);
+  SetWorld(options, textures, ToldScale(options), &scenario);
+  if (!scenario.scene) scenario.scene = BoxOfMotion(options.trajectory, options.clutter_share);
+  return scenario;
+}
+
+Scenario MakeScenario(const SimulationOptions& options, RecordedMotion motion, bool textures) {
+  Scenario scenario;
+  SetSensors(options, &scenario);
+  SetRecorded(std::move(motion), &scenario);
+  AddWorldAroundTruth(options, textures, &scenario);
+  return scenario;
+}
+
+Scenario MakeScenario(const SimulationOptions& options,
+                      std::shared_ptr<const Trajectory> trajectory) {
+  Scenario scenario;
+  SetSensors(options, &scenario);
+  scenario.trajectory = std::move(trajectory);
+  scenario.start = kEpoch;
+  scenario.label = "simulated";
+  SetWorld(options, false, ToldScale(options), &scenario);
+  if (!scenario.scene) scenario.scene = BoxAroundPath(*scenario.trajectory, options.clutter_share);
   return scenario;
 }
 

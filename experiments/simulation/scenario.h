@@ -5,6 +5,7 @@
 #include <string>
 
 #include "experiments/simulation/recorded_motion.h"
+#include "experiments/simulation/scene.h"
 #include "experiments/simulation/simulator.h"
 #include "experiments/simulation/world/world.h"
 
@@ -15,10 +16,12 @@ struct Scenario {
   std::shared_ptr<const Trajectory> trajectory;
   Timestamp start = 0;                 ///< the stamp of the trajectory's t = 0
   std::shared_ptr<const World> world;  ///< null: a box, tracks alone
+  std::shared_ptr<const Scene> scene;  ///< where tracks have their points
   RigCalibration true_rig;
   ImuNoise noise;  ///< scaled
   double gravity_m_per_s2 = kStandardGravity;
   double imu_rate_hz = 0.0;
+  double camera_rate_hz = 0.0;
   /// Of options.imu: its IMU, placed as the trajectory is.
   std::optional<RecordedMotion> recorded;
   /// For tables: what was simulated, and what of it was real.
@@ -31,6 +34,13 @@ struct Scenario {
 /// world is as much larger as that takes. `textures`: for rendering.
 /// Throws InputError for what does not exist or does not fit.
 [[nodiscard]] Scenario MakeScenario(const SimulationOptions& options, bool textures);
+
+/// The same for a recorded IMU at hand.
+[[nodiscard]] Scenario MakeScenario(const SimulationOptions& options, RecordedMotion motion,
+                                    bool textures);
+/// The same along a given motion, which is not moved; without textures.
+[[nodiscard]] Scenario MakeScenario(const SimulationOptions& options,
+                                    std::shared_ptr<const Trajectory> trajectory);
 
 /// Simulate(options) in a scenario that was made from them.
 [[nodiscard]] SimulatedRecording SimulateIn(const Scenario& scenario,

@@ -7,21 +7,15 @@
 #include "common/geometry/so3.h"
 #include "common/support/input_error.h"
 #include "common/support/logging.h"
+#include "common/support/numeric_text.h"
 #include "experiments/simulation/euroc_sequences.h"
 #include "experiments/simulation/imu_simulator.h"
-#include "experiments/simulation/scene.h"
+#include "experiments/simulation/scenario.h"
 #include "experiments/simulation/track_simulator.h"
-#include "experiments/simulation/trajectory_library.h"
-#include "experiments/simulation/world/world_library.h"
 
 namespace duet {
 namespace {
 
-// Late enough that a stamp kept in a double would show: 1.4e18 ns has a spacing of 256 ns there.
-constexpr Timestamp kEpoch = 1'400'000'000'000'000'000;
-// The IMU before the first and after the last frame: room for |t_d|, t_r and a sample.
-constexpr double kImuMargin_s = 0.2;
-constexpr const char* kBoxWorld = "box";
 // Separate random sequences, so that e.g. another IMU rate leaves the tracks as they are.
 // (1, 11 and 12 are the IMU's.)
 enum RandomStream : std::uint64_t { kTrackStream = 2, kToldStream = 3 };
@@ -37,21 +31,14 @@ Eigen::Quaterniond RotationFromRows(const std::array<double, 9>& rows) {
   return Eigen::Quaterniond(M).normalized();
 }
 
-ImuNoise ScaledNoise(const SimulationOptions& options) {
-  return {.gyroscope_density = options.noise_scale * options.gyroscope_density,
-          .accelerometer_density = options.noise_scale * options.accelerometer_density,
-          .gyroscope_random_walk = options.noise_scale * options.gyroscope_random_walk,
-          .accelerometer_random_walk = options.noise_scale * options.accelerometer_random_walk};
-}
-
 // Readings and truth at the IMU's stamps.
-void AddImu(const SimulationOptions& options, SimulatedRecording* recording) {
+void AddImu(const SimulationOptions& options, double rate_hz, SimulatedRecording* recording) {
   const ImuUnderSimulation imu{.calibration = recording->true_rig.imu,
                                .noise = recording->noise,
                                .biases = {.b_g = ToVector3(options.b_g_rad_per_s, "b_g_rad_per_s"),
                                           .b_a = ToVector3(options.b_a_m_per_s2, "b_a_m_per_s2")},
                                .g_G = recording->g_G};
-  const ImuSampling sampling{.rate_hz = options.imu_rate_hz,
+  const ImuSampling sampling{.rate_hz = rate_hz,
                              .gyroscope_range = options.gyroscope_range_rad_per_s,
                              .accelerometer_range = options.accelerometer_range_m_per_s2,
                              .jitter_s = options.imu_jitter_s,
@@ -75,49 +62,24 @@ RigCalibration DrawToldRig(const SimulationOptions& options, const RigCalibratio
   return BoxPlus(true_rig, layout, -error);
 }
 
-// A box like the walls around the flight space of a world.
-BoxScene BoxAround(const std::string& world, double clutter_share) {
-  if (world == "room") return {{-4.5, -4.0, 0.0}, {4.5, 4.0, 3.2}, clutter_share};
-  const FlightSpace space = FlightSpaceOf(world);
-  return {space.low - Eigen::Vector3d(2.0, 3.0, space.low.z()),
-          space.high + Eigen::Vector3d(2.0, 3.0, 3.0), clutter_share};
-}
-
-SimulatedRecording SimulateIn(const SimulationOptions& options,
-                              std::shared_ptr<const Trajectory> trajectory, const Scene& scene) {
-  if (options.cameras < 1 || options.cameras > 2) {
-    throw InputError("", 0, "cameras", "expected 1 or 2");
+// A camera in a wall sees nothing of the world that it is in.
+void CheckIsFree(const Scenario& scenario, Timestamp stamp) {
+  // A camera has a size.
+  constexpr double kMargin_m = 0.02;
+  const double t_s = SecondsBetween(scenario.start, stamp);
+  const Pose T_GB = scenario.trajectory->At(t_s).T_GB;
+  for (const CameraCalibration& camera : scenario.true_rig.cameras) {
+    const Eigen::Vector3d p_GC = T_GB * Pose{camera.R_CB, camera.p_CB}.Inverse().p;
+    if (scenario.world->IsFree(p_GC, kMargin_m, t_s)) continue;
+    throw InputError("", 0, "trajectory",
+                     "at " + FormatNumber(std::round(1e3 * t_s) * 1e-3) +
+                         " s a camera is inside something or outside of the world " +
+                         scenario.world->name() + ", at (" +
+                         FormatNumber(std::round(100.0 * p_GC.x()) / 100.0) + ", " +
+                         FormatNumber(std::round(100.0 * p_GC.y()) / 100.0) + ", " +
+                         FormatNumber(std::round(100.0 * p_GC.z()) / 100.0) +
+                         ") m; expected a path through free space");
   }
-  SimulatedRecording recording;
-  recording.trajectory = std::move(trajectory);
-  recording.start = kEpoch;
-  recording.g_G = {0.0, 0.0, -options.gravity_m_per_s2};
-  recording.noise = ScaledNoise(options);
-  recording.pixel_noise_px = options.noise_scale * options.pixel_noise_px;
-  if (options.true_rig) {
-    recording.true_rig = *options.true_rig;
-  } else {
-    recording.true_rig = EurocLikeRig(options.cameras);
-    recording.true_rig.t_d_s = options.t_d_s;
-    recording.true_rig.t_r_s = options.t_r_s;
-  }
-  recording.told_rig = DrawToldRig(options, recording.true_rig);
-  AddImu(options, &recording);
-
-  TrackSimulator tracks(options, recording.true_rig, *recording.trajectory, recording.start, scene,
-                        Random(static_cast<std::uint64_t>(options.seed), kTrackStream));
-  const double frames_s = recording.trajectory->duration_s() - 2.0 * kImuMargin_s;
-  // Frames fall on the IMU's stamps where the rates divide, as EuRoC's do.
-  const Timestamp first_frame =
-      EvenStamp(recording.start, static_cast<int>(std::lround(kImuMargin_s * options.imu_rate_hz)),
-                options.imu_rate_hz);
-  const int frame_count =
-      static_cast<int>(std::floor(frames_s * options.camera_rate_hz + 1e-6)) + 1;
-  recording.frames.reserve(static_cast<std::size_t>(std::max(frame_count, 0)));
-  for (int i = 0; i < frame_count; ++i) {
-    recording.frames.push_back(tracks.Observe(EvenStamp(first_frame, i, options.camera_rate_hz)));
-  }
-  return recording;
 }
 
 }  // namespace
@@ -172,33 +134,50 @@ RigCalibration EurocLikeRig(int cameras) {
   return rig;
 }
 
+SimulatedRecording SimulateIn(const Scenario& scenario, const SimulationOptions& options) {
+  SimulatedRecording recording;
+  recording.trajectory = scenario.trajectory;
+  recording.start = scenario.start;
+  recording.label = scenario.label;
+  recording.g_G = {0.0, 0.0, -scenario.gravity_m_per_s2};
+  recording.noise = scenario.noise;
+  recording.pixel_noise_px = options.noise_scale * options.pixel_noise_px;
+  recording.true_rig = scenario.true_rig;
+  recording.told_rig = DrawToldRig(options, recording.true_rig);
+  if (scenario.recorded) {
+    recording.imu = scenario.recorded->imu;
+    recording.truth = scenario.recorded->states;
+  } else {
+    AddImu(options, scenario.imu_rate_hz, &recording);
+  }
+
+  TrackSimulator tracks(options, recording.true_rig, *recording.trajectory, recording.start,
+                        *scenario.scene,
+                        Random(static_cast<std::uint64_t>(options.seed), kTrackStream));
+  double frames_s = recording.trajectory->duration_s() - 2.0 * kImuMargin_s;
+  if (options.duration_s > 0.0) frames_s = std::min(frames_s, options.duration_s);
+  // Frames fall on the IMU's stamps where the rates divide, as EuRoC's do.
+  const Timestamp first_frame =
+      EvenStamp(recording.start, static_cast<int>(std::lround(kImuMargin_s * scenario.imu_rate_hz)),
+                scenario.imu_rate_hz);
+  const int frame_count =
+      static_cast<int>(std::floor(frames_s * scenario.camera_rate_hz + 1e-6)) + 1;
+  recording.frames.reserve(static_cast<std::size_t>(std::max(frame_count, 0)));
+  for (int i = 0; i < frame_count; ++i) {
+    const Timestamp stamp = EvenStamp(first_frame, i, scenario.camera_rate_hz);
+    if (scenario.world) CheckIsFree(scenario, stamp);
+    recording.frames.push_back(tracks.Observe(stamp));
+  }
+  return recording;
+}
+
 SimulatedRecording Simulate(const SimulationOptions& options) {
-  auto trajectory =
-      MakeTrajectory(options.trajectory, options.duration_s + 2.0 * kImuMargin_s, options.rest_s);
-  if (options.world != kBoxWorld) return Simulate(options, std::move(trajectory));
-  const BoxScene scene = BoxAround(FindMotion(options.trajectory).world, options.clutter_share);
-  return SimulateIn(options, std::move(trajectory), scene);
+  return SimulateIn(MakeScenario(options, false), options);
 }
 
 SimulatedRecording Simulate(const SimulationOptions& options,
                             std::shared_ptr<const Trajectory> trajectory) {
-  if (options.world != kBoxWorld) {
-    const WorldScene scene(
-        MakeWorld(options.world, {.seed = static_cast<std::uint64_t>(options.seed),
-                                  .textures = false,
-                                  .moving_bodies = options.moving_bodies}));
-    return SimulateIn(options, std::move(trajectory), scene);
-  }
-  Eigen::Vector3d low = trajectory->At(0.0).T_GB.p;
-  Eigen::Vector3d high = low;
-  for (double t_s = 0.0; t_s <= trajectory->duration_s(); t_s += 0.1) {
-    const Eigen::Vector3d p_GB = trajectory->At(t_s).T_GB.p;
-    low = low.cwiseMin(p_GB);
-    high = high.cwiseMax(p_GB);
-  }
-  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(2.0);
-  const BoxScene scene(low - margin, high + margin, options.clutter_share);
-  return SimulateIn(options, std::move(trajectory), scene);
+  return SimulateIn(MakeScenario(options, std::move(trajectory)), options);
 }
 
 InitialCondition DrawInitialCondition(const InertialState& truth, const Matrix15d& covariance,

@@ -16,9 +16,16 @@
 
 namespace duet {
 
+/// The world without surfaces: points on the walls of a box and between them.
+inline constexpr const char* kBoxWorld = "box";
+/// The IMU before the first and after the last frame: room for |t_d|, t_r and a sample.
+inline constexpr double kImuMargin_s = 0.2;
+
 /// What is simulated. Defaults: EuRoC's rates and noise densities, an easy flight through a room.
 struct SimulationOptions {
   std::string trajectory = "room_walk";
+  std::string imu;
+  std::string sensors;
   double duration_s = 30.0;
   double rest_s = 0.0;
   int seed = 1;
@@ -42,7 +49,8 @@ struct SimulationOptions {
   int cameras = 1;
   double t_d_s = 0.0;
   double t_r_s = 0.0;
-  std::string world = "box";
+  std::string world = kBoxWorld;
+  double world_scale = 0.0;
   bool moving_bodies = false;
   int max_tracks = 120;
   double mean_track_frames = 60.0;
@@ -77,6 +85,7 @@ struct SimulatedRecording {
   Eigen::Vector3d g_G = Eigen::Vector3d::Zero();
   Timestamp start = 0;  ///< the instant of the trajectory's t = 0
   std::shared_ptr<const Trajectory> trajectory;
+  std::string label;  ///< for tables: what was simulated, and what of it was real
   int dropped_imu_samples = 0;
   int clipped_gyroscope_samples = 0;  ///< at the end of the range
   int clipped_accelerometer_samples = 0;
@@ -123,11 +132,21 @@ struct SimulatedRecording {
 
 template <class Visitor>
 void SimulationOptions::Visit(Visitor& v) {
-  v.Field("trajectory", &trajectory,
-          {.doc = "Name of a trajectory (circle, room_walk, aggressive, planar_driving, V1_01_easy "
-                  "...; an unknown one lists all)."});
+  v.Field(
+      "trajectory", &trajectory,
+      {.doc = "Name of a trajectory (duet simulate --list), or a truth file in EuRoC's or TUM's "
+              "form."});
+  v.Field("imu", &imu,
+          {.doc = "Folder of a recording whose IMU is taken as it is, with vision simulated along "
+                  "its truth; empty: the IMU is simulated."});
+  v.Field("sensors", &sensors,
+          {.doc = "The rig and its noise: a file like configs/sensors/euroc_like.yaml or a "
+                  "recording's folder; empty: EuRoC's numbers, with the keys below."});
   v.Field("duration_s", &duration_s,
-          {.doc = "Time from the first to the last frame.", .unit = "s", .min = 0.5, .max = 3600});
+          {.doc = "Time from the first to the last frame; 0: to the end of the motion.",
+           .unit = "s",
+           .min = 0,
+           .max = 86400});
   v.Field("rest_s", &rest_s,
           {.doc = "At rest for this long before setting off.", .unit = "s", .min = 0, .max = 600});
   v.Field("seed", &seed, {.doc = "Seed of everything random.", .min = 0, .max = 2e9});
@@ -179,6 +198,10 @@ void SimulationOptions::Visit(Visitor& v) {
       "world", &world,
       {.doc = "Where the tracks' points are: on the surfaces of room, bare_room, hall or street, "
               "with occlusion, or (box) on the walls of a box and between them, without."});
+  v.Field("world_scale", &world_scale,
+          {.doc = "Multiplies all lengths of the world; 0: 1, or as large as a truth's path needs.",
+           .min = 0,
+           .max = 20});
   v.Field("moving_bodies", &moving_bodies, {.doc = "Walkers and cars in the world."});
   v.Field("max_tracks", &max_tracks,
           {.doc = "Tracks in each frame of the first camera.", .min = 1, .max = 5000});

@@ -92,8 +92,8 @@ class RoadTrajectory final : public Trajectory {
   double duration_s_;
 };
 
-/// A trajectory seen from another place: turned about the vertical, then moved. Gravity, and with it
-/// what an IMU reads, stays the same.
+/// A trajectory seen from another place: turned about the vertical, then moved. Gravity, and with
+/// it what an IMU reads, stays the same.
 class PlacedTrajectory final : public Trajectory {
  public:
   PlacedTrajectory(std::shared_ptr<const Trajectory> trajectory, double yaw_rad,

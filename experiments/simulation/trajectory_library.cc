@@ -255,13 +255,6 @@ std::string NamedMotionsText() {
 
 const NamedMotion& FindMotion(const std::string& name) { return FindEntry(name).motion; }
 
-FlightSpace FlightSpaceOf(const std::string& world) {
-  if (world == "hall") return {.low = {-9.0, -5.0, 0.8}, .high = {9.0, 5.0, 4.5}};
-  if (world == "street") return {.low = {-70.0, -2.5, 1.4}, .high = {70.0, 2.5, 1.6}};
-  CHECK_EQ(world, "room");
-  return {.low = {-3.2, -2.8, 0.6}, .high = {3.2, 2.8, 2.5}};
-}
-
 std::shared_ptr<const Trajectory> MakeTrajectory(const std::string& name, double duration_s,
                                                  double rest_s) {
   const Entry& entry = FindEntry(name);

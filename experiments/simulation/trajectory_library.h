@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,15 +29,6 @@ struct NamedMotion {
 
 /// Throws InputError for an unknown name.
 [[nodiscard]] const NamedMotion& FindMotion(const std::string& name);
-
-/// The box in which the trajectories of a world stay, m in G.
-struct FlightSpace {
-  Eigen::Vector3d low;
-  Eigen::Vector3d high;
-};
-/// room: |x| <= 3.2, |y| <= 2.8, 0.6 <= z <= 2.5; hall: 9, 5, 0.8 to 4.5; street: 70, 2.5, 1.4 to
-/// 1.6. CHECKs the name.
-[[nodiscard]] FlightSpace FlightSpaceOf(const std::string& world);
 
 /// The motion over [0, duration_s]; the same motion for any duration. `rest_s` > 0: at rest for
 /// that long first, then off within a second. Throws InputError for an unknown name and for a

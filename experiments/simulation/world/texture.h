@@ -21,6 +21,7 @@ class Texture {
   };
   [[nodiscard]] const std::vector<Level>& levels() const { return levels_; }
   [[nodiscard]] double texel_m() const { return texel_m_; }
+  void set_texel_m(double texel_m) { texel_m_ = texel_m; }
 
  private:
   double texel_m_;

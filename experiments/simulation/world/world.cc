@@ -90,6 +90,38 @@ void World::SetBounds(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   high_ = high;
 }
 
+World World::Scaled(double factor) const {
+  CHECK_GT(factor, 0.0);
+  World scaled(name_);
+  for (const Texture& texture : textures_) {
+    scaled.textures_.push_back(texture);
+    scaled.textures_.back().set_texel_m(factor * texture.texel_m());
+  }
+  for (const Motion& motion : motions_) {
+    scaled.AddBody([motion, factor](double t_s) {
+      Pose T_G_body = motion(t_s);
+      T_G_body.p *= factor;
+      return T_G_body;
+    });
+  }
+  for (Surface surface : surfaces_) {
+    surface.corner *= factor;
+    surface.width_m *= factor;
+    surface.height_m *= factor;
+    surface.texture_origin_m *= factor;
+    scaled.AddSurface(surface);
+  }
+  for (Solid solid : solids_) {
+    solid.T_body_box.p *= factor;
+    solid.low *= factor;
+    solid.high *= factor;
+    scaled.solids_.push_back(solid);
+  }
+  scaled.low_ = factor * low_;
+  scaled.high_ = factor * high_;
+  return scaled;
+}
+
 Pose World::BodyPose(int body, double t_s) const {
   return body == 0 ? Pose{} : motions_[static_cast<std::size_t>(body - 1)](t_s);
 }

@@ -62,6 +62,9 @@ class World {
   /// The box outside of which no camera may be.
   void SetBounds(const Eigen::Vector3d& low, const Eigen::Vector3d& high);
 
+  /// The same world with all lengths, those of texels too, `factor` times as large.
+  [[nodiscard]] World Scaled(double factor) const;
+
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const std::vector<Surface>& surfaces() const { return surfaces_; }
   [[nodiscard]] const std::vector<Texture>& textures() const { return textures_; }

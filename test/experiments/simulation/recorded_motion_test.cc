@@ -8,6 +8,7 @@
 
 #include "common/geometry/so3.h"
 #include "common/support/input_error.h"
+#include "experiments/simulation/scenario.h"
 #include "experiments/simulation/imu_simulator.h"
 #include "experiments/simulation/trajectory_library.h"
 
@@ -118,7 +119,7 @@ TEST(RecordedMotion, SimulatesVisionForTheRecordedImu) {
   const RecordedMotion motion = FollowRecording(recording, "x");
   SimulationOptions options;
   options.max_tracks = 40;
-  const SimulatedRecording simulated = SimulateAlong(motion, options);
+  const SimulatedRecording simulated = SimulateIn(MakeScenario(options, motion, false), options);
   ASSERT_EQ(simulated.imu.size(), recording.imu.size());
   EXPECT_EQ(simulated.imu[5].a_m, recording.imu[5].a_m);
   EXPECT_EQ(simulated.noise.gyroscope_density, recording.imu_sensor.noise.gyroscope_density);
