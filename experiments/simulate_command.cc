@@ -1,47 +1,145 @@
 #include <gflags/gflags.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <thread>
 
 #include "common/config/config_sources.h"
 #include "common/support/input_error.h"
-#include "common/support/text_file.h"
 #include "experiments/commands.h"
 #include "experiments/common_flags.h"
 #include "experiments/exit_status.h"
 #include "experiments/record_folder.h"
-#include "experiments/simulation/write_recording.h"
+#include "experiments/simulated_dataset.h"
+#include "experiments/simulation/euroc_sequences.h"
+#include "experiments/simulation/render/render_presets.h"
+#include "experiments/simulation/trajectory_library.h"
+#include "experiments/simulation/world/world_library.h"
 
-DEFINE_string(preset, "room_easy", "Settings to begin with; --set changes single ones.");
+DEFINE_string(preset, "room_easy",
+              "Settings to begin with (--list names them); the other flags and --set change single "
+              "ones.");
+DEFINE_string(world, "", "Where: room, bare_room, hall, street, or box (points without surfaces).");
+DEFINE_string(trajectory, "",
+              "Along what: a name (--list) or a truth file in EuRoC's or TUM's form.");
+DEFINE_string(sensors, "",
+              "The rig: a file like configs/sensors/euroc_like.yaml, or a recording's folder.");
+DEFINE_string(imu, "",
+              "A recording whose IMU is taken as it is; vision is simulated along its truth.");
+DEFINE_bool(images, false, "Render images, in place of simulated tracks.");
+DEFINE_bool(point_tracks, false, "Write simulated tracks beside the images too.");
+DEFINE_string(seeds, "", "A..B: a data set for each seed, in folders seed-<k> of --out.");
+DEFINE_bool(list, false, "Print presets, trajectories and worlds, and end.");
 
 namespace duet {
 namespace {
 
-SimulationOptions ReadOptions(const CommandLine& line, ConfigSources* sources) {
-  SimulationOptions options = SimulationPreset(FLAGS_preset);
+std::vector<std::string> PresetNames() {
+  std::vector<std::string> names = SimulationPresetNames();
+  for (const RenderPreset& preset : RenderPresets()) names.push_back(preset.name);
+  return names;
+}
+
+void PrintList() {
+  std::string text = "Presets (--preset)\n";
+  for (const std::string& name : SimulationPresetNames()) text += "  " + name + "\n";
+  for (const RenderPreset& preset : RenderPresets()) {
+    text += "  " + preset.name + ": " + preset.summary + "\n";
+  }
+  text += "\nWorlds (--world)\n  box: points without surfaces, for tracks alone\n";
+  for (const std::string& name : WorldNames()) text += "  " + name + "\n";
+  text += "\nTrajectories (--trajectory)\n" + NamedMotionsText();
+  text += "\nFlights like EuRoC's sequences, and the thesis's table 7.1\n" + EurocSequencesText();
+  std::fputs(text.c_str(), stdout);
+}
+
+SimulatedDatasetOptions ReadOptions(const CommandLine& line, ConfigSources* sources) {
+  SimulatedDatasetOptions options;
+  if (const RenderPreset* preset = FindRenderPreset(FLAGS_preset)) {
+    options.simulation = preset->simulation;
+    options.render = preset->render;
+  } else {
+    options.simulation = SimulationPreset(FLAGS_preset);
+  }
+  // A truth decides about its length itself.
+  if (!FLAGS_imu.empty() || std::filesystem::exists(FLAGS_trajectory)) {
+    options.simulation.duration_s = 0.0;
+  }
   for (const std::string& file : line.All("config")) sources->AddFile(file);
   for (const std::string& assignment : line.All("set")) {
-    sources->AddOverride("simulation." + assignment);
+    const bool has_section = assignment.starts_with("render.") ||
+                             assignment.starts_with("simulation.") ||
+                             assignment.starts_with("told_errors.");
+    sources->AddOverride(has_section ? assignment : "simulation." + assignment);
   }
+  const auto set_text = [&](const char* flag, const std::string& value) {
+    if (!line.Given(flag)) return;
+    // Paths absolute, so that simulation.yaml can be used from anywhere; as a quoted YAML scalar.
+    const std::string text =
+        std::filesystem::exists(value) ? std::filesystem::absolute(value).string() : value;
+    sources->AddOverride("simulation." + std::string(flag) + "=\"" + text + "\"");
+  };
+  set_text("world", FLAGS_world);
+  set_text("trajectory", FLAGS_trajectory);
+  set_text("sensors", FLAGS_sensors);
+  set_text("imu", FLAGS_imu);
   if (line.Given("seed")) {
     sources->AddOverride("simulation.seed=" + std::to_string(FLAGS_seed));
+    sources->AddOverride("render.seed=" + std::to_string(FLAGS_seed));
   }
-  sources->Read("simulation", &options);
+  options.render.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  if (line.Given("threads")) {
+    sources->AddOverride("render.threads=" + std::to_string(FLAGS_threads));
+  }
+  ReadSimulatedDatasetOptions(sources, &options);
   sources->CheckAllKeysUsed();
+  options.images = FLAGS_images;
+  options.tracks = !FLAGS_images || FLAGS_point_tracks;
   return options;
 }
 
+struct SeedRange {
+  int first;
+  int last;
+};
+
+SeedRange ParseSeeds(const std::string& text) {
+  const std::size_t dots = text.find("..");
+  SeedRange range{};
+  char end = 0;
+  if (dots == std::string::npos ||
+      std::sscanf(text.c_str(), "%d..%d%c", &range.first, &range.last, &end) != 2 ||
+      range.first < 0 || range.last < range.first) {
+    throw InputError("", 0, "--seeds", "expected A..B with 0 <= A <= B, got '" + text + "'");
+  }
+  return range;
+}
+
 int RunSimulate(const CommandLine& line) {
+  if (FLAGS_list) {
+    PrintList();
+    return kDone;
+  }
+  if (FLAGS_out.empty()) throw InputError("", 0, "--out", "expected the folder to write");
   RequireAbsent(FLAGS_out);
   ConfigSources sources;
-  const SimulationOptions options = ReadOptions(line, &sources);
-  OutputFolder folder(FLAGS_out);
-  const SimulatedRecording simulated = Simulate(options);
-  WriteSimulatedRecording(simulated, folder.path());
-  WriteTextFile(folder.path() / "simulation.yaml", sources.ResolvedYaml());
-  folder.Commit();
-  std::printf("%zu frames of %d camera%s and %zu IMU samples in %s\n", simulated.frames.size(),
-              options.cameras, options.cameras == 1 ? "" : "s", simulated.imu.size(),
-              folder.target().c_str());
+  SimulatedDatasetOptions options = ReadOptions(line, &sources);
+  options.quiet = FLAGS_quiet;
+  if (FLAGS_seeds.empty()) {
+    return WriteSimulatedDataset(options, sources.ResolvedYaml(), FLAGS_out);
+  }
+  const SeedRange seeds = ParseSeeds(FLAGS_seeds);
+  for (int seed = seeds.first; seed <= seeds.last; ++seed) {
+    ConfigSources of_seed;
+    of_seed.AddText(sources.ResolvedYaml(), "simulation.yaml");
+    of_seed.AddOverride("simulation.seed=" + std::to_string(seed));
+    of_seed.AddOverride("render.seed=" + std::to_string(seed));
+    ReadSimulatedDatasetOptions(&of_seed, &options);
+    const auto folder = std::filesystem::path(FLAGS_out) / ("seed-" + std::to_string(seed));
+    const int status = WriteSimulatedDataset(options, of_seed.ResolvedYaml(), folder);
+    if (status != kDone) return status;
+  }
   return kDone;
 }
 
@@ -50,19 +148,32 @@ int RunSimulate(const CommandLine& line) {
 Command SimulateCommand() {
   return {
       .name = "simulate",
-      .summary = "Simulates a recording: IMU, point tracks and their truth.",
+      .summary = "Simulates a recording: IMU, point tracks or rendered images, and their truth.",
       .description =
-          "Writes an ASL folder with what a rig that moves through a room would have measured: "
-          "imu0, tracks<k> in place of images, state_groundtruth_estimate0, and truth.yaml with "
-          "the true calibration (the sensor files hold what an estimator is told). Everything "
-          "random comes from --seed; the same settings give the same bytes. simulation.yaml "
-          "beside mav0 holds every setting with its origin and can be given as --config.",
-      .example = "duet simulate --preset room_easy --seed 7 --set duration_s=60 --out sim7",
-      .flags = {{.name = "out", .value = "DIR", .required = true},
-                {.name = "preset", .value = "NAME", .choices = SimulationPresetNames()},
+          "Writes an ASL folder with what a rig that moves through a world would have measured: "
+          "imu0, tracks<k> or (--images) rendered images cam<k>, state_groundtruth_estimate0, and "
+          "truth.yaml with the true calibration (the sensor files hold what an estimator is told). "
+          "With --imu the IMU is a recording's own and vision is simulated along its truth. "
+          "Everything random comes from --seed; the same settings give the same bytes. "
+          "simulation.yaml beside mav0 holds every setting with its origin and can be given as "
+          "--config. Keys for --set: simulation.KEY (or KEY), render.KEY, told_errors.KEY.",
+      .example =
+          "duet simulate --preset easy_room --images --seed 7 --set duration_s=30 --out sim7",
+      .flags = {{.name = "out", .value = "DIR"},
+                {.name = "preset", .value = "NAME", .choices = PresetNames()},
+                {.name = "world", .value = "NAME"},
+                {.name = "trajectory", .value = "NAME|FILE"},
+                {.name = "sensors", .value = "FILE"},
+                {.name = "imu", .value = "DIR"},
+                {.name = "images"},
+                {.name = "point_tracks"},
                 {.name = "config", .value = "FILE", .repeatable = true},
                 {.name = "set", .value = "KEY=VALUE", .repeatable = true},
-                {.name = "seed", .value = "N"}},
+                {.name = "seed", .value = "N"},
+                {.name = "seeds", .value = "A..B"},
+                {.name = "threads", .value = "N"},
+                {.name = "list"},
+                {.name = "quiet"}},
       .run = RunSimulate};
 }
 

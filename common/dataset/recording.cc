@@ -22,6 +22,7 @@ class Loader {
   }
 
   Recording Load() {
+    ReadLabel();
     ReadImu();
     ReadVision();
     ReadTruth();
@@ -53,6 +54,16 @@ class Loader {
     fingerprint_.Update(name + "\n" + std::to_string(text.size()) + "\n");
     fingerprint_.Update(text);
     return text;
+  }
+
+  void ReadLabel() {
+    const fs::path path = recording_.folder / "recording.yaml";
+    if (!fs::exists(path)) return;
+    const YamlNode root = ParseYaml(Read(path), path.string());
+    YamlMap map(root, path.string());
+    recording_.label = map.Text("label");
+    for (const std::string& key : map.UnknownKeys())
+      unknown_keys_.push_back("recording.yaml: " + key);
   }
 
   void ReadImu() {
@@ -297,6 +308,16 @@ void MakeFolder(const fs::path& folder) {
   if (error) throw OutputError(folder.string(), "cannot be made: " + error.message());
 }
 
+/// A double-quoted YAML scalar.
+std::string Quoted(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + "\"";
+}
+
 }  // namespace
 
 std::vector<Timestamp> Recording::FrameStamps() const {
@@ -333,6 +354,9 @@ void WriteRecording(const Recording& recording, const fs::path& folder) {
   MakeFolder(mav / "imu0");
   WriteTextFile(mav / "imu0" / "data.csv", WriteImuTable(recording.imu));
   WriteTextFile(mav / "imu0" / "sensor.yaml", WriteImuSensor(recording.imu_sensor));
+  if (!recording.label.empty()) {
+    WriteTextFile(mav / "recording.yaml", "label: " + Quoted(recording.label) + "\n");
+  }
   if (recording.truth) {
     const fs::path truth = mav / "state_groundtruth_estimate0";
     MakeFolder(truth);

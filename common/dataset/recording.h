@@ -38,6 +38,8 @@ struct Recording {
 
   std::optional<GroundTruth> truth;
   std::string truth_file;
+  /// What it is, for tables, where it is not just a recording: recording.yaml's `label`.
+  std::string label;
   /// SHA-256 of what was read: names and bytes of tables and sensor files, names and sizes of
   /// images.
   std::string fingerprint;

@@ -6,7 +6,7 @@
 
 #include "common/support/logging.h"
 #include "common/support/random.h"
-#include "experiments/simulation/trajectory_library.h"
+#include "experiments/simulation/world/world_library.h"
 
 namespace duet {
 namespace {

@@ -54,6 +54,7 @@ Recording ToRecording(const SimulatedRecording& simulated) {
   }
   recording.tracks.frames = simulated.frames;
   recording.truth = GroundTruthOf(simulated.truth);
+  recording.label = simulated.label;
   return recording;
 }
 
@@ -62,6 +63,7 @@ std::string TruthYaml(const SimulatedRecording& simulated) {
   std::string text =
       "# What the simulator used. The sensor files beside say what an estimator is told.\n";
   text += "gravity_m_per_s2: " + FormatNumber(-simulated.g_G.z()) + "\n";
+  text += "label: \"" + simulated.label + "\"\n";
   text += "pixel_noise_sigma_px: " + FormatNumber(simulated.pixel_noise_px) + "\n";
   text += "time_offset_s: " + FormatNumber(rig.t_d_s) + "\n";
   text += "readout_time_s: " + FormatNumber(rig.t_r_s) + "\n";
@@ -84,8 +86,10 @@ std::string TruthYaml(const SimulatedRecording& simulated) {
 }
 
 void WriteSimulatedRecording(const SimulatedRecording& simulated,
-                             const std::filesystem::path& folder) {
-  WriteRecording(ToRecording(simulated), folder);
+                             const std::filesystem::path& folder, bool tracks) {
+  Recording recording = ToRecording(simulated);
+  if (!tracks) recording.vision = Vision::kNone;
+  WriteRecording(recording, folder);
   WriteTextFile(folder / "mav0" / "truth.yaml", TruthYaml(simulated));
 }
 

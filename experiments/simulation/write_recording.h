@@ -16,9 +16,10 @@ namespace duet {
 /// imu0/sensor.yaml and tracks<k>/sensor.yaml, cameras below cam<k>.
 [[nodiscard]] std::string TruthYaml(const SimulatedRecording& simulated);
 
-/// ASL folder: mav0/imu0, mav0/tracks<k>, mav0/state_groundtruth_estimate0 and mav0/truth.yaml.
+/// ASL folder: mav0/imu0, mav0/tracks<k> (where `tracks`), mav0/state_groundtruth_estimate0,
+/// mav0/recording.yaml and mav0/truth.yaml.
 /// `folder` must not hold mav0 yet. Throws OutputError.
 void WriteSimulatedRecording(const SimulatedRecording& simulated,
-                             const std::filesystem::path& folder);
+                             const std::filesystem::path& folder, bool tracks = true);
 
 }  // namespace duet
