@@ -81,7 +81,15 @@ void World::AddBox(const Pose& pose, const Eigen::Vector3d& low, const Eigen::Ve
     }
     AddSurface(side);
   }
-  solids_.push_back({surface.body, pose, low, high});
+  AddSolid(surface.body, pose, low, high);
+}
+
+void World::AddSolid(int body, const Pose& pose, const Eigen::Vector3d& low,
+                     const Eigen::Vector3d& high) {
+  CHECK((high - low).minCoeff() > 0.0) << "a box without inside";
+  CHECK_GE(body, 0);
+  CHECK_LT(body, body_count());
+  solids_.push_back({body, pose, low, high});
 }
 
 void World::SetBounds(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {

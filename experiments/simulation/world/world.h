@@ -59,6 +59,9 @@ class World {
   /// brightness and density are `surface`'s; each face begins elsewhere in the texture.
   void AddBox(const Pose& pose, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
               const Surface& surface);
+  /// The solid alone, for a box whose faces are added one by one.
+  void AddSolid(int body, const Pose& pose, const Eigen::Vector3d& low,
+                const Eigen::Vector3d& high);
   /// The box outside of which no camera may be.
   void SetBounds(const Eigen::Vector3d& low, const Eigen::Vector3d& high);
 
