@@ -89,6 +89,9 @@ RunRecord ReadRunManifest(const ManifestReader& manifest, Timestamp span_start) 
   run.status = status == "done" ? manifest.Text("outcome.last_status") : status;
   run.reason = manifest.Text("outcome.reason");
   run.frames = manifest.Count("outcome.frames");
+  run.waiting_frames = manifest.Count("outcome.waiting");
+  run.waited_s = manifest.Number("outcome.waited_s");
+  run.waited_for = manifest.Text("outcome.waited_for");
   run.skipped_frames = manifest.Count("outcome.skipped");
   run.dead_reckoned_frames = manifest.Count("outcome.dead_reckoned");
   if (manifest.Has("outcome.failed_at_ns")) {

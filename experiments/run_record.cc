@@ -59,8 +59,15 @@ RunRecorder::RunRecorder(const std::filesystem::path& folder, const CalibrationL
   }
 }
 
+void RunRecorder::CountFrame(const TrackFrameSet& frames) {
+  if (summary_.frames++ == 0) first_frame_ = frames.timestamp;
+  if (!summary_.first_instant) {
+    summary_.waited_s = SecondsBetween(first_frame_, frames.timestamp);
+  }
+}
+
 void RunRecorder::AddWaiting(const TrackFrameSet& frames) {
-  ++summary_.frames;
+  CountFrame(frames);
   ++summary_.waiting;
   FeatureCounts counts;
   counts.observed = ObservationCount(frames);
@@ -69,7 +76,7 @@ void RunRecorder::AddWaiting(const TrackFrameSet& frames) {
 }
 
 void RunRecorder::Add(const TrackFrameSet& frames, const EstimatorOutput& output) {
-  ++summary_.frames;
+  CountFrame(frames);
   AddFeatures(frames, EstimatorStatusName(output.status), output.features);
   row_ += output.keyframe ? ",1" : ",0";
   row_ += output.standstill ? ",1," : ",0,";
