@@ -50,7 +50,7 @@ RunRecorder::RunRecorder(const std::filesystem::path& folder, const CalibrationL
   for (const std::string& name : names) header += ",sigma_" + name;
   states_.Write(header + "\n");
   features_.Write(
-      "#timestamp [ns],status,observed,used,gated,not triangulated,too short,lost,keyframe,"
+      "#timestamp [ns],status,observed,used,cleaned,gated,not triangulated,too short,lost,keyframe,"
       "standstill,iterations\n");
   if (with_covariance) {
     covariance_.emplace(folder / "covariance.csv");
@@ -159,8 +159,8 @@ void RunRecorder::AddFeatures(const TrackFrameSet& frames, const char* status,
   AppendNumber(frames.timestamp, &row_);
   row_ += ',';
   row_ += status;
-  for (const int count : {counts.observed, counts.used, counts.gated, counts.not_triangulated,
-                          counts.too_short, counts.lost}) {
+  for (const int count : {counts.observed, counts.used, counts.cleaned, counts.gated,
+                          counts.not_triangulated, counts.too_short, counts.lost}) {
     row_ += ',';
     AppendNumber(count, &row_);
   }

@@ -25,6 +25,7 @@ const std::vector<FootRow>& FootRows() {
       {"frames kept", {"keyframes"}},
       {"first estimates", {"first_estimates"}},
       {"chi-squared gate", {"gate"}},
+      {"outliers removed from tracks", {"remove_outliers"}},
       {"robust loss", {"robust_loss"}},
       {"landmark parameters", {"landmark_parameters"}},
       {"iterations, at most", {"max_iterations"}},
