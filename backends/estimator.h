@@ -81,6 +81,7 @@ enum class EstimatorStatus { kInitializing, kTracking, kDeadReckoning, kFailed }
 struct FeatureCounts {
   int observed = 0;          ///< observations in the frame, all cameras
   int used = 0;              ///< landmarks in this frame's update or problem
+  int cleaned = 0;           ///< of these, without some of their observations (outliers)
   int gated = 0;             ///< refused by the chi-squared gate or as outliers
   int not_triangulated = 0;  ///< refused by triangulation
   int too_short = 0;         ///< ended with too few observations

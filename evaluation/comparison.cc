@@ -27,6 +27,10 @@ void AddOutcomeRows(const Comparison& comparison, TextTable* table) {
         table);
   };
   count("  frames", &EstimatorRun::frames);
+  count("  frames before the start, no estimate", &EstimatorRun::waiting_frames);
+  AddRow(
+      comparison, "  waited for the start [s]",
+      [](const EstimatorRun& run) { return Number(run.waited_s, 2); }, table);
   count("  frames without IMU, skipped", &EstimatorRun::skipped_frames);
   count("  frames dead reckoned", &EstimatorRun::dead_reckoned_frames);
   count("  restarts", &EstimatorRun::restarts);
@@ -115,7 +119,7 @@ std::string FailuresText(const Comparison& comparison) {
     if (std::isfinite(run.failed_at_s)) text += " at " + Number(run.failed_at_s, 2) + " s";
     text += ", " + run.reason + "\n";
   }
-  for (const std::string& warning : comparison.warnings) text += "warning: " + warning + "\n";
+  for (const std::string& warning : comparison.warnings) text += "WARNING: " + warning + "\n";
   return text;
 }
 
@@ -134,6 +138,9 @@ Json RunJson(const EstimatorRun& run) {
   json["reason"] = run.reason;
   json["failed_at_s"] = NumberJson(run.failed_at_s);
   json["frames"] = run.frames;
+  json["waiting_frames"] = run.waiting_frames;
+  json["waited_s"] = NumberJson(run.waited_s);
+  json["waited_for"] = run.waited_for;
   json["skipped_frames"] = run.skipped_frames;
   json["dead_reckoned_frames"] = run.dead_reckoned_frames;
   json["restarts"] = run.restarts;

@@ -20,6 +20,9 @@ struct EstimatorRun {
   /// Seconds from the start of the span to the failure; NaN where there is none.
   double failed_at_s = std::numeric_limits<double>::quiet_NaN();
   int frames = 0;                ///< processed
+  int waiting_frames = 0;        ///< before the start: without an estimate
+  double waited_s = 0.0;         ///< for the start
+  std::string waited_for;        ///< what was missing until then
   int skipped_frames = 0;        ///< not covered by the IMU
   int dead_reckoned_frames = 0;  ///< without a usable observation
   int restarts = 0;

@@ -8,7 +8,9 @@ DEFINE_string(config, "", "Configuration file (YAML); later ones overrule earlie
 DEFINE_string(set, "", "Sets one key of the configuration, e.g. msckf.window=15; see duet config.");
 DEFINE_string(init, "auto",
               "Where the first state comes from: the recording's ground truth, or standing still; "
-              "auto: standing still, else a failure that says what was missing.");
+              "auto: standing still, else a failure that says what was missing. Frames before the "
+              "start have no estimate; a start later than 5 s, or than a fifth of the frames, is a "
+              "warning.");
 DEFINE_string(cameras, "0", "Cameras to use.");
 DEFINE_double(start, 0.0,
               "Begin this long after the recording's first image (duet allan: IMU sample) [s].");

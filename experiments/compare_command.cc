@@ -14,6 +14,7 @@
 #include "experiments/default_recording.h"
 #include "experiments/exit_status.h"
 #include "experiments/interrupt.h"
+#include "experiments/late_start.h"
 #include "experiments/record_folder.h"
 #include "experiments/record_reader.h"
 #include "experiments/session.h"
@@ -120,6 +121,13 @@ class Comparator {
     return child.exit_status;
   }
 
+  static StartWait WaitOf(const EstimatorRun& run) {
+    return {.frames_waited = run.waiting_frames,
+            .frames = run.frames,
+            .waited_s = run.waited_s,
+            .missing = run.waited_for};
+  }
+
   /// Each estimator alone on one core, one after the other. That it fails is a result.
   int RunEstimator(const std::string& name) {
     const fs::path folder = record_.path() / name;
@@ -149,6 +157,10 @@ class Comparator {
         !fs::exists(session_.recording.folder / "cam0")) {
       run.run.nees = SummarizeNees(ComputeRecordNees(folder, *session_.recording.truth),
                                    session_.configuration.evaluation.nees_settle_s);
+    }
+    if (const std::optional<std::string> late = LateStartWarning(WaitOf(run.run));
+        late && !run.trajectory.empty()) {
+      comparison_.warnings.push_back(name + " " + *late);
     }
     comparison_.runs.push_back(std::move(run.run));
     estimates_.push_back({name, std::move(run.trajectory)});
@@ -196,6 +208,7 @@ class Comparator {
     manifest["tracks_sha256"] = comparison_.tracks_sha256;
     manifest["init"] = FLAGS_init;
     manifest["seed"] = FLAGS_seed;
+    manifest["warnings"] = comparison_.warnings;  // of the runs; this program's own are added
     manifest["outcome"] = {{"status", status == kInterrupted ? "interrupted" : "done"}};
     record_.Commit(session_.sources);
     if (!FLAGS_quiet) std::fprintf(stderr, "wrote %s\n", record_.target().c_str());

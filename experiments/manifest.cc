@@ -4,7 +4,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "common/support/input_error.h"
 #include "common/support/text_file.h"
 #include "experiments/build_info.h"
 
@@ -42,15 +41,6 @@ void WriteManifest(const Manifest& manifest, const std::filesystem::path& folder
   // A path or an argument may hold bytes that are no UTF-8; they are replaced, not refused.
   WriteTextFile(folder / "manifest.json",
                 manifest.dump(2, ' ', false, Manifest::error_handler_t::replace) + "\n");
-}
-
-Manifest ReadManifest(const std::filesystem::path& folder) {
-  const std::filesystem::path path = folder / "manifest.json";
-  try {
-    return Manifest::parse(ReadTextFile(path));
-  } catch (const Manifest::exception& error) {
-    throw InputError(path.string(), 0, "", std::string("is no manifest: ") + error.what());
-  }
 }
 
 double PeakMemoryMb() {

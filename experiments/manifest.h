@@ -17,9 +17,6 @@ using Manifest = nlohmann::ordered_json;
 /// Writes manifest.json into the folder. Throws OutputError.
 void WriteManifest(const Manifest& manifest, const std::filesystem::path& folder);
 
-/// Reads a manifest. Throws InputError.
-[[nodiscard]] Manifest ReadManifest(const std::filesystem::path& folder);
-
 /// Most memory this process has held so far (VmHWM), 1e6 bytes; negative where it is not known.
 [[nodiscard]] double PeakMemoryMb();
 

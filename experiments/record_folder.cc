@@ -36,7 +36,8 @@ RecordFolder::RecordFolder(const std::string& out, const CommandLine& line, cons
 
 void RecordFolder::Commit(const ConfigSources& sources) {
   manifest_["settings_sha256"] = sources.SettingsSha256();
-  manifest_["warnings"] = log_.warnings();
+  if (!manifest_.contains("warnings")) manifest_["warnings"] = Manifest::array();
+  for (const std::string& warning : log_.warnings()) manifest_["warnings"].push_back(warning);
   WriteTextFile(path() / "config.yaml", sources.ResolvedYaml());
   WriteTextFile(path() / "log.txt", log_.text());
   WriteManifest(manifest_, path());

@@ -9,7 +9,8 @@
 #include "evaluation/comparison.h"
 #include "evaluation/consistency.h"
 #include "experiments/child_process.h"
-#include "experiments/manifest.h"
+#include "experiments/manifest_reader.h"
+#include "experiments/record_tables.h"
 
 namespace duet {
 
@@ -24,11 +25,19 @@ struct RunRecord {
 [[nodiscard]] RunRecord ReadRunRecord(const std::filesystem::path& folder, const ChildResult& child,
                                       Timestamp span_start);
 
-/// What `duet track` has left.
+/// The part of it that its manifest.json tells. Throws InputError.
+[[nodiscard]] RunRecord ReadRunManifest(const ManifestReader& manifest, Timestamp span_start);
+
+/// What `duet track` has left, and the part of it that its manifest.json tells.
 [[nodiscard]] FrontendRun ReadTrackRecord(const std::filesystem::path& folder);
+[[nodiscard]] FrontendRun ReadTrackManifest(const ManifestReader& manifest);
 
 /// NEES at each state of a record that has covariance.csv, against a truth with velocities.
 [[nodiscard]] NeesRun ComputeRecordNees(const std::filesystem::path& folder,
                                         const GroundTruth& truth);
+/// The same from tables in memory; a state without a covariance of its instant has no NEES.
+[[nodiscard]] NeesRun ComputeNeesOfTables(const std::vector<InertialState>& states,
+                                          const std::vector<RecordedCovariance>& covariances,
+                                          const GroundTruth& truth);
 
 }  // namespace duet

@@ -9,6 +9,7 @@
 #include "experiments/common_flags.h"
 #include "experiments/estimation_loop.h"
 #include "experiments/exit_status.h"
+#include "experiments/late_start.h"
 #include "experiments/record_folder.h"
 #include "experiments/session.h"
 
@@ -39,19 +40,27 @@ ExitStatus StatusOf(LoopOutcome outcome) {
   return outcome == LoopOutcome::kFailed ? kEstimatorFailed : kDone;
 }
 
-Manifest DescribeOutcome(LoopOutcome outcome, const RunSummary& summary,
-                         const std::string& start_reason) {
+StartWait WaitOf(const RunSummary& summary, const std::string& start_reason) {
+  return {.frames_waited = summary.waiting,
+          .frames = summary.frames,
+          .waited_s = summary.waited_s,
+          .missing = summary.first_instant && summary.waiting == 0 ? "" : start_reason};
+}
+
+Manifest DescribeOutcome(LoopOutcome outcome, const RunSummary& summary, const StartWait& wait) {
   Manifest manifest = {{"status", OutcomeName(outcome)},
                        {"reason", ""},
                        {"last_status", EstimatorStatusName(summary.last_status)},
                        {"frames", summary.frames},
-                       {"waiting", summary.waiting},
+                       {"waiting", wait.frames_waited},
+                       {"waited_s", wait.waited_s},
+                       {"waited_for", wait.missing},
                        {"tracking", summary.tracking},
                        {"dead_reckoned", summary.dead_reckoning},
                        {"skipped", summary.skipped}};
   if (outcome == LoopOutcome::kFailed) {
     manifest["reason"] =
-        summary.failure.empty() ? "did not start: " + start_reason : summary.failure;
+        summary.failure.empty() ? "did not start: " + wait.missing : summary.failure;
   }
   if (summary.failure_instant) manifest["failed_at_ns"] = *summary.failure_instant;
   if (summary.first_instant) manifest["first_state_ns"] = *summary.first_instant;
@@ -106,14 +115,21 @@ int RunRun(const CommandLine& line) {
   manifest["backend"] = FLAGS_backend;
   manifest["init"] = FLAGS_init;
   manifest["seed"] = FLAGS_seed;
-  manifest["outcome"] = DescribeOutcome(outcome, recorder.summary(), start.reason());
+  const StartWait wait = WaitOf(recorder.summary(), start.reason());
+  manifest["outcome"] = DescribeOutcome(outcome, recorder.summary(), wait);
   const std::string reason = manifest["outcome"]["reason"];
   progress.Finish(OutcomeName(outcome) + (reason.empty() ? "" : ": " + reason));
   if (outcome == LoopOutcome::kFailed) LOG(WARNING) << FLAGS_backend << " failed: " << reason;
+  const std::optional<std::string> late =
+      recorder.summary().first_instant ? LateStartWarning(wait) : std::nullopt;
+  if (late) LOG(WARNING) << FLAGS_backend << " " << *late;
   record.Commit(session.sources);
   const RunSummary& summary = recorder.summary();
-  std::printf("%s: %s, %d of %d frames tracked%s%s\n", FLAGS_backend.c_str(), OutcomeName(outcome),
-              summary.tracking, summary.frames, reason.empty() ? "" : "; ", reason.c_str());
+  const std::string waited =
+      summary.waiting > 0 ? ", " + std::to_string(summary.waiting) + " waited for the start" : "";
+  std::printf("%s: %s, %d of %d frames tracked%s%s%s\n", FLAGS_backend.c_str(),
+              OutcomeName(outcome), summary.tracking, summary.frames, waited.c_str(),
+              reason.empty() ? "" : "; ", reason.c_str());
   return StatusOf(outcome);
 }
 

@@ -50,7 +50,7 @@ RunRecorder::RunRecorder(const std::filesystem::path& folder, const CalibrationL
   for (const std::string& name : names) header += ",sigma_" + name;
   states_.Write(header + "\n");
   features_.Write(
-      "#timestamp [ns],status,observed,used,gated,not triangulated,too short,lost,keyframe,"
+      "#timestamp [ns],status,observed,used,cleaned,gated,not triangulated,too short,lost,keyframe,"
       "standstill,iterations\n");
   if (with_covariance) {
     covariance_.emplace(folder / "covariance.csv");
@@ -59,8 +59,15 @@ RunRecorder::RunRecorder(const std::filesystem::path& folder, const CalibrationL
   }
 }
 
+void RunRecorder::CountFrame(const TrackFrameSet& frames) {
+  if (summary_.frames++ == 0) first_frame_ = frames.timestamp;
+  if (!summary_.first_instant) {
+    summary_.waited_s = SecondsBetween(first_frame_, frames.timestamp);
+  }
+}
+
 void RunRecorder::AddWaiting(const TrackFrameSet& frames) {
-  ++summary_.frames;
+  CountFrame(frames);
   ++summary_.waiting;
   FeatureCounts counts;
   counts.observed = ObservationCount(frames);
@@ -69,7 +76,7 @@ void RunRecorder::AddWaiting(const TrackFrameSet& frames) {
 }
 
 void RunRecorder::Add(const TrackFrameSet& frames, const EstimatorOutput& output) {
-  ++summary_.frames;
+  CountFrame(frames);
   AddFeatures(frames, EstimatorStatusName(output.status), output.features);
   row_ += output.keyframe ? ",1" : ",0";
   row_ += output.standstill ? ",1," : ",0,";
@@ -152,8 +159,8 @@ void RunRecorder::AddFeatures(const TrackFrameSet& frames, const char* status,
   AppendNumber(frames.timestamp, &row_);
   row_ += ',';
   row_ += status;
-  for (const int count : {counts.observed, counts.used, counts.gated, counts.not_triangulated,
-                          counts.too_short, counts.lost}) {
+  for (const int count : {counts.observed, counts.used, counts.cleaned, counts.gated,
+                          counts.not_triangulated, counts.too_short, counts.lost}) {
     row_ += ',';
     AppendNumber(count, &row_);
   }

@@ -13,6 +13,8 @@ namespace duet {
 struct RunSummary {
   int frames = 0;   ///< fed
   int waiting = 0;  ///< before the start
+  /// From the first frame to the one with the first state; to the last one where there is none.
+  double waited_s = 0.0;
   int tracking = 0;
   int dead_reckoning = 0;
   int skipped = 0;  ///< their interval was not covered by the IMU
@@ -40,6 +42,7 @@ class RunRecorder {
   [[nodiscard]] const RunSummary& summary() const { return summary_; }
 
  private:
+  void CountFrame(const TrackFrameSet& frames);
   void AddState(const EstimatorOutput& output);
   void AddCovariance(const EstimatorOutput& output);
   void AddFeatures(const TrackFrameSet& frames, const char* status, const FeatureCounts& counts);
@@ -50,6 +53,7 @@ class RunRecorder {
   TextFileWriter features_;
   std::optional<TextFileWriter> covariance_;
   RunSummary summary_;
+  Timestamp first_frame_ = 0;
   std::string row_;
 };
 

@@ -1,10 +1,11 @@
 #include "experiments/settings_foot.h"
 
-#include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "common/support/numeric_text.h"
 #include "common/support/text_file.h"
+#include "experiments/record_tables.h"
 
 namespace duet {
 namespace {
@@ -24,6 +25,7 @@ const std::vector<FootRow>& FootRows() {
       {"frames kept", {"keyframes"}},
       {"first estimates", {"first_estimates"}},
       {"chi-squared gate", {"gate"}},
+      {"outliers removed from tracks", {"remove_outliers"}},
       {"robust loss", {"robust_loss"}},
       {"landmark parameters", {"landmark_parameters"}},
       {"iterations, at most", {"max_iterations"}},
@@ -48,29 +50,10 @@ std::string EstimatedCalibration(const std::vector<ResolvedValue>& values) {
   return text.empty() ? "none" : text;
 }
 
-/// Mean over the frames of features.csv of one column, by its place.
-std::string MeanOfColumn(const std::string& csv, std::size_t column) {
-  double sum = 0.0;
-  int count = 0;
-  for (std::size_t begin = 0; begin < csv.size();) {
-    const std::size_t end = std::min(csv.find('\n', begin), csv.size());
-    std::string_view line = std::string_view(csv).substr(begin, end - begin);
-    begin = end + 1;
-    if (line.empty() || line[0] == '#') continue;
-    for (std::size_t i = 0; i < column && !line.empty(); ++i) {
-      line.remove_prefix(std::min(line.find(','), line.size() - 1) + 1);
-    }
-    sum += ParseDouble(line.substr(0, line.find(','))).value_or(0.0);
-    ++count;
-  }
-  return count == 0 ? "-" : FormatFixed(sum / count, 1);
-}
-
 }  // namespace
 
 Foot SettingsFoot(const std::vector<ResolvedValue>& values, const std::string& estimator,
                   const std::filesystem::path& folder) {
-  constexpr std::size_t kUsedColumn = 3;  // features.csv: stamp, status, observed, used
   Foot foot;
   for (const FootRow& row : FootRows()) {
     for (const char* key : row.keys) {
@@ -82,9 +65,10 @@ Foot SettingsFoot(const std::vector<ResolvedValue>& values, const std::string& e
   if (const std::string* standstill = ValueOf(values, "shared.standstill.enabled")) {
     foot.emplace_back("standstill measurement", *standstill);
   }
-  if (std::filesystem::exists(folder / "features.csv")) {
-    foot.emplace_back("landmarks used a frame",
-                      MeanOfColumn(ReadTextFile(folder / "features.csv"), kUsedColumn));
+  const std::filesystem::path features = folder / "features.csv";
+  if (std::filesystem::exists(features)) {
+    const double used = ReadFeatureMean(ReadTextFile(features), features.string(), "used");
+    foot.emplace_back("landmarks used a frame", std::isfinite(used) ? FormatFixed(used, 1) : "-");
   }
   return foot;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "common/dataset/csv_reader.h"
 #include "common/support/input_error.h"
 #include "common/support/numeric_text.h"
 #include "common/support/text_file.h"
@@ -11,17 +12,6 @@ namespace duet {
 namespace {
 
 constexpr std::string_view kUnit = " [ms]";
-
-std::vector<std::string_view> Split(std::string_view line) {
-  std::vector<std::string_view> fields;
-  std::size_t begin = 0;
-  while (true) {
-    const std::size_t comma = line.find(',', begin);
-    fields.push_back(line.substr(begin, comma - begin));
-    if (comma == std::string_view::npos) return fields;
-    begin = comma + 1;
-  }
-}
 
 }  // namespace
 
@@ -55,33 +45,19 @@ void TimingLog::Write(const std::filesystem::path& path) const {
   WriteTextFile(path, text);
 }
 
-std::vector<std::pair<std::string, std::vector<double>>> ReadTiming(
-    const std::filesystem::path& path) {
-  const std::string text = ReadTextFile(path);
+std::vector<std::pair<std::string, std::vector<double>>> ReadTimingTable(std::string_view csv,
+                                                                         const std::string& file) {
+  const std::vector<std::string> names = ReadColumnNames(csv, file);
   std::vector<std::pair<std::string, std::vector<double>>> columns;
-  int line_number = 0;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::vector<std::string_view> fields =
-        Split(std::string_view(text).substr(begin, end - begin));
-    begin = end + 1;
-    if (++line_number == 1) {
-      for (std::size_t i = 1; i < fields.size(); ++i) {
-        columns.emplace_back(fields[i].substr(0, fields[i].rfind(kUnit)), std::vector<double>());
-      }
-      continue;
-    }
-    if (fields.size() != columns.size() + 1) {
-      throw InputError(path.string(), line_number, "",
-                       "expected " + std::to_string(columns.size() + 1) + " fields");
-    }
-    for (std::size_t i = 1; i < fields.size(); ++i) {
-      if (fields[i].empty()) continue;
-      const std::optional<double> value = ParseDouble(fields[i]);
-      if (!value) {
-        throw InputError(path.string(), line_number, columns[i - 1].first, "expected a number");
-      }
-      columns[i - 1].second.push_back(*value);
+  for (std::size_t i = 1; i < names.size(); ++i) {
+    if (!names[i].ends_with(kUnit)) throw InputError(file, 1, names[i], "expected a column in ms");
+    columns.emplace_back(names[i].substr(0, names[i].size() - kUnit.size()), std::vector<double>());
+  }
+  CsvReader reader(csv, file, {names});
+  while (reader.Next()) {
+    reader.CheckLater(0, reader.Stamp(0));
+    for (int i = 1; i < reader.column_count(); ++i) {
+      if (!reader.Text(i).empty()) columns[i - 1].second.push_back(reader.Number(i));
     }
   }
   return columns;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -32,7 +33,7 @@ class TimingLog {
 };
 
 /// A timing.csv by columns: name and the values [ms] of the frames that have it. Throws InputError.
-[[nodiscard]] std::vector<std::pair<std::string, std::vector<double>>> ReadTiming(
-    const std::filesystem::path& path);
+[[nodiscard]] std::vector<std::pair<std::string, std::vector<double>>> ReadTimingTable(
+    std::string_view csv, const std::string& file);
 
 }  // namespace duet

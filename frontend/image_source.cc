@@ -1,7 +1,5 @@
 #include "frontend/image_source.h"
 
-#include <time.h>
-
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -12,15 +10,10 @@
 
 #include "common/support/input_error.h"
 #include "common/support/logging.h"
+#include "common/support/stage_timer.h"
 
 namespace duet {
 namespace {
-
-double ThreadCpuMs() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
-}
 
 // Empty where the file cannot be read.
 cv::Mat DecodeGrey(const std::string& path) {

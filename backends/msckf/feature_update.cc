@@ -24,22 +24,14 @@ void KeepUnless(std::vector<T>* elements, const Refuse& refuse) {
   elements->resize(kept);
 }
 
-/// True where the pixels fix the depth: the inverse depth is `min_sigmas` of its standard deviation
-/// (from the pixels' noise alone, H_f whitened) above zero.
-bool HasDepth(const InverseDepth& landmark, const Eigen::Ref<const LandmarkRows>& H_f,
-              double min_sigmas) {
-  const Eigen::Matrix3d covariance = (H_f.transpose() * H_f).inverse();
-  const double rho = landmark.z();
-  return rho > 0.0 && rho * rho > min_sigmas * min_sigmas * covariance(2, 2);
-}
-
 }  // namespace
 
 FeatureUpdate::FeatureUpdate(const EstimatorSetup& setup, const MsckfOptions& options)
     : options_(options),
       settings_{options.first_estimates && !options.rebase_first_estimates,
                 setup.shared.pixel_noise_px, setup.g_G},
-      gate_(options.gate_probability, MaxDegreesOfFreedom(setup, options)) {
+      gate_(options.gate_probability, MaxDegreesOfFreedom(setup, options)),
+      outlier_search_(options.outlier_probability) {
   const int max_observations = options.max_clones * static_cast<int>(setup.rig.cameras.size());
   in_states_.reserve(max_observations);
   observations_.reserve(max_observations * options.max_landmarks_per_update);
@@ -72,24 +64,55 @@ void FeatureUpdate::SelectFinishedTracks(const FilterState& state, bool window_f
 
 void FeatureUpdate::GatherObservations(const FilterState& state, const FeatureTrack& track,
                                        Candidate* candidate) {
-  const bool time_matters = state.time_matters();
   candidate->first_observation = static_cast<int>(observations_.size());
   candidate->observation_count = static_cast<int>(track.observations.size());
-  in_states_.clear();
   for (const ClonedObservation& o : track.observations) {
-    const int index = state.CloneIndex(o.clone_id);
-    const PixelObservation pixel{o.camera, Eigen::Vector2d(o.u, o.v)};
-    observations_.push_back({index, pixel});
-    const Clone& clone = state.clones()[index];
-    in_states_.push_back(
-        {{clone.nav, clone.t_d_at_instant_s, time_matters ? &clone.rates : nullptr}, pixel});
+    observations_.push_back({state.CloneIndex(o.clone_id), {o.camera, Eigen::Vector2d(o.u, o.v)}});
   }
-  candidate->anchor_clone = observations_[candidate->first_observation].clone;
 }
 
-std::span<const CloneObservation> FeatureUpdate::ObservationsOf(const Candidate& candidate) {
-  return std::span<const CloneObservation>(observations_)
+std::span<CloneObservation> FeatureUpdate::ObservationsOf(const Candidate& candidate) {
+  return std::span<CloneObservation>(observations_)
       .subspan(candidate.first_observation, candidate.observation_count);
+}
+
+TriangulationStatus FeatureUpdate::TriangulateOne(const FilterState& state, Candidate* candidate) {
+  const bool time_matters = state.time_matters();
+  in_states_.clear();
+  for (const CloneObservation& o : ObservationsOf(*candidate)) {
+    const Clone& clone = state.clones()[o.clone];
+    in_states_.push_back(
+        {{clone.nav, clone.t_d_at_instant_s, time_matters ? &clone.rates : nullptr}, o.pixel});
+  }
+  candidate->anchor_clone = observations_[candidate->first_observation].clone;
+  const Pose anchor = state.clones()[candidate->anchor_clone].nav.pose();
+  return duet::Triangulate(state.rig(), in_states_, anchor, settings_.g_G, triangulation_,
+                           &candidate->landmark);
+}
+
+bool FeatureUpdate::LinearizeOne(const FilterState& state, const Candidate& candidate) {
+  const int count = 2 * candidate.observation_count;
+  return LinearizeLandmark(state, columns_, settings_, candidate.anchor_clone, candidate.landmark,
+                           ObservationsOf(candidate), H_f_.middleRows(candidate.first_row, count),
+                           rows_.middleRows(candidate.first_row, count));
+}
+
+/// True where the pixels fix the depth: the inverse depth is min_depth_sigmas of its standard
+/// deviation (from the pixels' noise alone, H_f whitened) above zero.
+bool FeatureUpdate::HasDepth(const Candidate& candidate) {
+  const auto H_f = H_f_.middleRows(candidate.first_row, 2 * candidate.observation_count);
+  const Eigen::Matrix3d covariance = (H_f.transpose() * H_f).inverse();
+  const double rho = candidate.landmark.z();
+  return rho > 0.0 &&
+         rho * rho > options_.min_depth_sigmas * options_.min_depth_sigmas * covariance(2, 2);
+}
+
+void FeatureUpdate::ProjectOne(const Candidate& candidate) {
+  const int count = 2 * candidate.observation_count;
+  // The anchor is the oldest clone that saw the landmark: columns before it are zero.
+  duet::ProjectNullspace(H_f_.middleRows(candidate.first_row, count),
+                         rows_.middleRows(candidate.first_row, count),
+                         columns_.CloneColumn(candidate.anchor_clone), columns_.width());
 }
 
 void FeatureUpdate::Triangulate(const FilterState& state, FeatureTracks* tracks,
@@ -97,9 +120,7 @@ void FeatureUpdate::Triangulate(const FilterState& state, FeatureTracks* tracks,
   observations_.clear();
   KeepUnless(&candidates_, [&](Candidate& candidate) {
     GatherObservations(state, (*tracks)[candidate.track], &candidate);
-    const Pose anchor = state.clones()[candidate.anchor_clone].nav.pose();
-    const TriangulationStatus status = duet::Triangulate(
-        state.rig(), in_states_, anchor, settings_.g_G, triangulation_, &candidate.landmark);
+    const TriangulationStatus status = TriangulateOne(state, &candidate);
     if (status == TriangulationStatus::kOk) return false;
     ++counts->not_triangulated;
     if (status == TriangulationStatus::kLargeResidual) tracks->Consume(candidate.track);
@@ -119,30 +140,58 @@ void FeatureUpdate::Linearize(const FilterState& state, FeatureTracks* tracks,
   }
   int row = 0;
   KeepUnless(&candidates_, [&](Candidate& candidate) {
-    const int count = 2 * candidate.observation_count;
     candidate.first_row = row;
-    const bool ok = LinearizeLandmark(state, columns_, settings_, candidate.anchor_clone,
-                                      candidate.landmark, ObservationsOf(candidate),
-                                      H_f_.middleRows(row, count), rows_.middleRows(row, count));
+    const bool ok = LinearizeOne(state, candidate);
     if (!ok) tracks->Consume(candidate.track);
-    if (!ok ||
-        !HasDepth(candidate.landmark, H_f_.middleRows(row, count), options_.min_depth_sigmas)) {
+    if (!ok || !HasDepth(candidate)) {
       ++counts->not_triangulated;
       return true;
     }
-    row += count;
+    row += 2 * candidate.observation_count;
     return false;
   });
 }
 
 void FeatureUpdate::ProjectNullspace() {
-  for (const Candidate& candidate : candidates_) {
-    const int count = 2 * candidate.observation_count;
-    // The anchor is the oldest clone that saw the landmark: columns before it are zero.
-    duet::ProjectNullspace(H_f_.middleRows(candidate.first_row, count),
-                           rows_.middleRows(candidate.first_row, count),
-                           columns_.CloneColumn(candidate.anchor_clone), columns_.width());
+  for (const Candidate& candidate : candidates_) ProjectOne(candidate);
+}
+
+bool FeatureUpdate::PassesGate(const Candidate& candidate) {
+  const int width = columns_.width();
+  const int first = columns_.CloneColumn(candidate.anchor_clone);
+  const auto block = rows_.middleRows(candidate.first_row + 3, 2 * candidate.observation_count - 3);
+  return gate_.Passes(block.middleCols(first, width - first), block.col(width),
+                      P_measured_.bottomRightCorner(width - first, width - first));
+}
+
+bool FeatureUpdate::RemoveOutliers(const FilterState& state, Candidate* candidate) {
+  const int width = columns_.width();
+  const int first = columns_.CloneColumn(candidate->anchor_clone);
+  const int count = candidate->observation_count;
+  const auto block = rows_.middleRows(candidate->first_row + 3, 2 * count - 3);
+  if (!outlier_search_.Find(H_f_.middleRows(candidate->first_row, 2 * count),
+                            block.middleCols(first, width - first), block.col(width),
+                            P_measured_.bottomRightCorner(width - first, width - first), gate_,
+                            std::min(count / 4, count - options_.min_observations), &outliers_)) {
+    return false;
   }
+  const std::span<CloneObservation> observations = ObservationsOf(*candidate);
+  auto next_outlier = outliers_.begin();
+  int kept = 0;
+  for (int k = 0; k < count; ++k) {
+    if (next_outlier != outliers_.end() && *next_outlier == k) {
+      ++next_outlier;
+    } else {
+      observations[kept++] = observations[k];
+    }
+  }
+  candidate->observation_count = kept;
+  if (TriangulateOne(state, candidate) != TriangulationStatus::kOk ||
+      !LinearizeOne(state, *candidate) || !HasDepth(*candidate)) {
+    return false;
+  }
+  ProjectOne(*candidate);
+  return true;
 }
 
 void FeatureUpdate::Gate(const FilterState& state, FeatureTracks* tracks, FeatureCounts* counts) {
@@ -155,14 +204,13 @@ void FeatureUpdate::Gate(const FilterState& state, FeatureTracks* tracks, Featur
       for (int i = 0; i < width; ++i) P_measured_(i, j) = P(components[i], components[j]);
     }
   }
-  KeepUnless(&candidates_, [&](const Candidate& candidate) {
+  KeepUnless(&candidates_, [&](Candidate& candidate) {
     tracks->Consume(candidate.track);
-    const int first = columns_.CloneColumn(candidate.anchor_clone);
-    const auto block =
-        rows_.middleRows(candidate.first_row + 3, 2 * candidate.observation_count - 3);
-    const bool passes =
-        !options_.gate || gate_.Passes(block.middleCols(first, width - first), block.col(width),
-                                       P_measured_.bottomRightCorner(width - first, width - first));
+    bool passes = !options_.gate || PassesGate(candidate);
+    if (!passes && options_.remove_outliers) {
+      passes = RemoveOutliers(state, &candidate) && PassesGate(candidate);
+      if (passes) ++counts->cleaned;
+    }
     ++(passes ? counts->used : counts->gated);
     return !passes;
   });

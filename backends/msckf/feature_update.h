@@ -11,6 +11,7 @@
 #include "backends/msckf/kalman_update.h"
 #include "backends/msckf/linearization.h"
 #include "backends/msckf/msckf_options.h"
+#include "backends/msckf/outlier_search.h"
 #include "common/measurement/triangulation.h"
 
 namespace duet {
@@ -41,7 +42,8 @@ class FeatureUpdate {
   /// 6.5.2: three rows a landmark go.
   void ProjectNullspace();
 
-  /// 6.5.3: refuses landmarks by the chi-squared test. Uses up the observations of both kinds.
+  /// 6.5.3: refuses landmarks by the chi-squared test; one that fails because of single pixels is
+  /// used without them (MsckfOptions::remove_outliers). Uses up the observations of both kinds.
   void Gate(const FilterState& state, FeatureTracks* tracks, FeatureCounts* counts);
 
   /// 6.30 to 6.32: the measurements that remain, [H | r] of unit noise; no rows where there are
@@ -66,12 +68,22 @@ class FeatureUpdate {
 
   void GatherObservations(const FilterState& state, const FeatureTrack& track,
                           Candidate* candidate);
-  [[nodiscard]] std::span<const CloneObservation> ObservationsOf(const Candidate& candidate);
+  [[nodiscard]] std::span<CloneObservation> ObservationsOf(const Candidate& candidate);
+  /// The steps of one landmark. `observations_` and `first_row` are given.
+  [[nodiscard]] TriangulationStatus TriangulateOne(const FilterState& state, Candidate* candidate);
+  [[nodiscard]] bool LinearizeOne(const FilterState& state, const Candidate& candidate);
+  [[nodiscard]] bool HasDepth(const Candidate& candidate);
+  void ProjectOne(const Candidate& candidate);
+  [[nodiscard]] bool PassesGate(const Candidate& candidate);
+  /// Leaves out what contradicts the rest and takes the landmark through the steps once more, up to
+  /// the projection. False where that is not possible.
+  [[nodiscard]] bool RemoveOutliers(const FilterState& state, Candidate* candidate);
 
   MsckfOptions options_;
   LinearizationSettings settings_;
   TriangulationOptions triangulation_;
   ChiSquaredGate gate_;
+  OutlierSearch outlier_search_;
   VisualColumns columns_;
 
   std::vector<Candidate> candidates_;
@@ -79,6 +91,7 @@ class FeatureUpdate {
   std::vector<TrackObservationInState> in_states_;  // one landmark's
   LandmarkRows H_f_;
   MeasurementRows rows_;
+  std::vector<int> outliers_;   // of one landmark
   Eigen::MatrixXd P_measured_;  // covariance of the measured components
   Eigen::MatrixXd stack_;
   MeasurementShape shape_ = MeasurementShape::kFull;

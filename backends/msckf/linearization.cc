@@ -9,11 +9,6 @@ namespace {
 using TwoRowsRef =
     Eigen::Ref<Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>, 0, Eigen::OuterStride<>>;
 
-bool IsMeasuredByPixels(CalibrationBlock block) {
-  return block != CalibrationBlock::kTg && block != CalibrationBlock::kTs &&
-         block != CalibrationBlock::kTa;
-}
-
 ObservingState Observing(const Clone& clone, const NavState& nav, bool time_matters) {
   return {nav, clone.t_d_at_instant_s, time_matters ? &clone.rates : nullptr};
 }
@@ -60,7 +55,7 @@ void VisualColumns::Assign(const FilterState& state) {
   first_calibration_column_ = width();
   first_calibration_offset_ = state.layout().size();
   for (const CalibrationLayout::Entry& entry : state.layout().entries()) {
-    if (!IsMeasuredByPixels(entry.block)) continue;
+    if (IsImuBlock(entry.block)) continue;  // no pixel measures it
     first_calibration_offset_ = std::min(first_calibration_offset_, entry.offset);
     for (int k = 0; k < entry.size; ++k) {
       components_.push_back(state.CalibrationOffset() + entry.offset + k);

@@ -96,11 +96,9 @@ void Msckf::Propagate(Timestamp instant) {
   const InertialState& inertial = state_.inertial();
   if (instant == inertial.instant) return;
   imu_.Extract(inertial.instant, instant, &readings_);
-  const bool estimates_T = state_.layout().OffsetOf(CalibrationBlock::kTg) >= 0 ||
-                           state_.layout().OffsetOf(CalibrationBlock::kTs) >= 0 ||
-                           state_.layout().OffsetOf(CalibrationBlock::kTa) >= 0;
-  const ImuDelta delta = IntegrateImu(readings_, inertial.biases, state_.rig().imu,
-                                      setup_.imu_noise, {.calibration_jacobians = estimates_T});
+  const ImuDelta delta =
+      IntegrateImu(readings_, inertial.biases, state_.rig().imu, setup_.imu_noise,
+                   {.calibration_jacobians = state_.layout().EstimatesImu()});
   const NavState next = Predict(inertial.nav, delta, setup_.g_G);
   const NavState& linearized_at = options_.first_estimates ? state_.nav_fej() : inertial.nav;
   const Transition transition = MakeTransition(delta, linearized_at, next, setup_.g_G);

@@ -6,20 +6,6 @@ namespace {
 constexpr int kNav = 9;
 constexpr int kInertial = 15;
 
-/// Columns of Gamma that belong to an estimated T matrix, -1 for other blocks.
-int GammaColumn(CalibrationBlock block) {
-  switch (block) {
-    case CalibrationBlock::kTg:
-      return 0;
-    case CalibrationBlock::kTs:
-      return 9;
-    case CalibrationBlock::kTa:
-      return 18;
-    default:
-      return -1;
-  }
-}
-
 }  // namespace
 
 void PropagateCovariance(const Transition& transition, const CalibrationLayout& layout,
@@ -27,15 +13,15 @@ void PropagateCovariance(const Transition& transition, const CalibrationLayout& 
   // F = the rows of (theta, p, v); the T matrices come first in the calibration.
   int width = kInertial;
   for (const CalibrationLayout::Entry& entry : layout.entries()) {
-    if (GammaColumn(entry.block) >= 0) width = kInertial + entry.offset + entry.size;
+    if (IsImuBlock(entry.block)) width = kInertial + entry.offset + entry.size;
   }
   auto& F = workspace->F;
   F.setZero(kNav, width);
   F.leftCols<kInertial>() = transition.Phi.topRows<kNav>();
   for (const CalibrationLayout::Entry& entry : layout.entries()) {
-    const int column = GammaColumn(entry.block);
-    if (column < 0) continue;
-    F.middleCols<9>(kInertial + entry.offset) = transition.Gamma.middleCols<9>(column);
+    if (!IsImuBlock(entry.block)) continue;
+    F.middleCols<9>(kInertial + entry.offset) =
+        transition.Gamma.middleCols<9>(ImuBlockOffset(entry.block));
   }
 
   const auto n = P.rows();

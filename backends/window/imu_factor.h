@@ -30,16 +30,6 @@ void EvaluateImuFactor(const ImuDelta& delta, const NavState& nav_i, const ImuBi
                        const ImuCalibration& calibration, const Eigen::Vector3d& g_G, Vector15d* r,
                        ImuFactorJacobians* jacobians = nullptr);
 
-/// True for T_g, T_s, T_a, the part of the calibration that an IMU delta depends on.
-[[nodiscard]] constexpr bool IsImuBlock(CalibrationBlock block) {
-  return block == CalibrationBlock::kTg || block == CalibrationBlock::kTs ||
-         block == CalibrationBlock::kTa;
-}
-/// Where such a block starts among the 27 numbers.
-[[nodiscard]] constexpr int ImuBlockOffset(CalibrationBlock block) {
-  return block == CalibrationBlock::kTg ? 0 : block == CalibrationBlock::kTs ? 9 : 18;
-}
-
 /// W with W'W = covariance^-1 (lower triangular: the inverse of the Cholesky factor). Components
 /// without any variance (a density of zero) get the one that corresponds to 1e-9 of the unit.
 [[nodiscard]] Matrix15d SquareRootInformation(const Matrix15d& covariance);

@@ -117,9 +117,7 @@ ImuLink WindowEstimator::Integrate(Timestamp from, Timestamp to, const ImuBiases
                                    const ImuCalibration& calibration) {
   imu_.Extract(from, to, &readings_);
   ImuDeltaOptions delta_options;
-  delta_options.calibration_jacobians = layout_.OffsetOf(CalibrationBlock::kTg) >= 0 ||
-                                        layout_.OffsetOf(CalibrationBlock::kTs) >= 0 ||
-                                        layout_.OffsetOf(CalibrationBlock::kTa) >= 0;
+  delta_options.calibration_jacobians = layout_.EstimatesImu();
   ImuLink link;
   link.delta = IntegrateImu(readings_, biases, calibration, setup_.imu_noise, delta_options);
   link.sqrt_information = SquareRootInformation(link.delta.covariance);

@@ -235,7 +235,7 @@ void ConfigSources::AppendYaml(const std::string& group, int depth, std::string*
   if (found == groups_.end()) return;
   for (const std::string& name : found->second.children) {
     const std::string path = Join(group, name);
-    text->append(static_cast<std::size_t>(2 * depth), ' ');
+    text->append(2 * static_cast<std::size_t>(depth), ' ');
     if (groups_.contains(path)) {
       *text += name + ":\n";
       AppendYaml(path, depth + 1, text);

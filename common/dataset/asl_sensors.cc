@@ -140,6 +140,16 @@ void AppendMatrixUnless(const char* key, const Eigen::Matrix3d& matrix,
 
 }  // namespace
 
+ImuNoise ReadImuNoise(YamlMap* map) {
+  const NumberRange positive{1e-15, 1e3};  // a density of zero makes covariances singular
+  ImuNoise noise;
+  noise.gyroscope_density = map->Number("gyroscope_noise_density", positive);
+  noise.gyroscope_random_walk = map->Number("gyroscope_random_walk", positive);
+  noise.accelerometer_density = map->Number("accelerometer_noise_density", positive);
+  noise.accelerometer_random_walk = map->Number("accelerometer_random_walk", positive);
+  return noise;
+}
+
 Pose ReadTransform(YamlMap* map, const std::string& key) {
   return PoseOfMatrix(*map, key, ReadMatrix4(map, key));
 }
@@ -197,13 +207,8 @@ ImuSensor ReadImuSensor(YamlMap map, std::vector<std::string>* unknown_keys) {
   if (T_BS.p.norm() > 1e-9 || T_BS.R.vec().norm() > 1e-9) {
     map.Fail("T_BS", "expected the identity: the body frame is the IMU's");
   }
-  // A density of zero makes covariances singular.
-  const NumberRange positive{1e-15, 1e3};
   ImuSensor sensor;
-  sensor.noise.gyroscope_density = map.Number("gyroscope_noise_density", positive);
-  sensor.noise.gyroscope_random_walk = map.Number("gyroscope_random_walk", positive);
-  sensor.noise.accelerometer_density = map.Number("accelerometer_noise_density", positive);
-  sensor.noise.accelerometer_random_walk = map.Number("accelerometer_random_walk", positive);
+  sensor.noise = ReadImuNoise(&map);
   sensor.rate_hz = map.NumberOr("rate_hz", 0.0, {1e-3, 1e6});
   sensor.gravity = map.NumberOr("gravity_m_per_s2", kStandardGravity, {0.1, 100.0});
   const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();

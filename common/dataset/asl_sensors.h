@@ -62,6 +62,9 @@ struct CameraSensor {
                                      const std::vector<CameraSensor>& cameras,
                                      const std::string& file);
 
+/// The four densities, under the keys that ASL and Kalibr have in common; above zero.
+[[nodiscard]] ImuNoise ReadImuNoise(YamlMap* map);
+
 /// A 4x4 transform: ASL's {rows, cols, data} or Kalibr's four rows of four. InputError where it is
 /// none, with how far its rotation is from one. Rounding (1e-3) is put right.
 [[nodiscard]] Pose ReadTransform(YamlMap* map, const std::string& key);

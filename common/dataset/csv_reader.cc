@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "common/support/input_error.h"
-#include "common/support/logging.h"
 #include "common/support/numeric_text.h"
 
 namespace duet {
@@ -31,7 +30,6 @@ std::string Shorten(std::string_view text) {
 CsvReader::CsvReader(std::string_view text, std::string file,
                      std::vector<std::vector<std::string>> shapes, char separator)
     : rest_(text), file_(std::move(file)), shapes_(std::move(shapes)), separator_(separator) {
-  CHECK(!shapes_.empty());
   if (text.empty()) throw InputError(file_, 0, "", "is empty");
   if (text.find('\0') != std::string_view::npos) {
     throw InputError(file_, 0, "", "is no text: it contains a zero byte");
@@ -85,6 +83,12 @@ void CsvReader::Split(std::string_view row) {
 }
 
 void CsvReader::ChooseShape() {
+  if (shapes_.empty()) {
+    for (std::size_t i = 1; i <= fields_.size(); ++i) {
+      columns_.push_back("column " + std::to_string(i));
+    }
+    return;
+  }
   std::string counts;
   for (const std::vector<std::string>& shape : shapes_) {
     if (shape.size() == fields_.size()) {
@@ -157,6 +161,39 @@ void CsvReader::Fail(int column, const std::string& text) const {
 
 void CsvReader::FailValue(int column, const std::string& expected) const {
   Fail(column, "expected " + expected + ", got '" + Shorten(Text(column)) + "'");
+}
+
+std::vector<std::string> ReadColumnNames(std::string_view text, const std::string& file) {
+  std::string_view line = text.substr(0, text.find('\n'));
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  if (line.empty() || line.front() != '#') {
+    throw InputError(file, 1, "", "expected the names of the columns after a '#'");
+  }
+  std::vector<std::string> names;
+  for (std::size_t begin = 1;;) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    names.emplace_back(Trim(line.substr(begin, end - begin)));
+    if (end == line.size()) return names;
+    begin = end + 1;
+  }
+}
+
+Eigen::Vector3d ReadVector(const CsvReader& reader, int column) {
+  return {reader.Number(column), reader.Number(column + 1), reader.Number(column + 2)};
+}
+
+Eigen::Quaterniond ReadQuaternion(const CsvReader& reader, int column, bool w_first) {
+  const Eigen::Vector4d q(reader.Number(column), reader.Number(column + 1),
+                          reader.Number(column + 2), reader.Number(column + 3));
+  const double length = q.norm();
+  // Files are rounded: EuRoC's to 1e-6. Beyond a thousandth it is no rotation.
+  if (!(std::abs(length - 1.0) <= 1e-3)) {
+    reader.Fail(column, "is no rotation: expected a quaternion of length 1, got length " +
+                            FormatNumber(length));
+  }
+  const Eigen::Vector4d unit = q / length;
+  return w_first ? Eigen::Quaterniond(unit[0], unit[1], unit[2], unit[3])
+                 : Eigen::Quaterniond(unit[3], unit[0], unit[1], unit[2]);
 }
 
 }  // namespace duet

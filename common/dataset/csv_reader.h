@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -17,9 +18,9 @@ namespace duet {
 class CsvReader {
  public:
   /// `shapes`: the column names of each shape that the table may have; shapes differ in their
-  /// number of columns, and the first row decides which it is. `separator` ' ' stands for any
-  /// number of blanks. `text` must outlive the reader. Throws where the text is empty, no text or
-  /// truncated.
+  /// number of columns, and the first row decides which it is. No shapes: any number of columns,
+  /// named "column 1", ...; the first row decides. `separator` ' ' stands for any number of blanks.
+  /// `text` must outlive the reader. Throws where the text is empty, no text or truncated.
   CsvReader(std::string_view text, std::string file, std::vector<std::vector<std::string>> shapes,
             char separator = ',');
 
@@ -61,6 +62,18 @@ class CsvReader {
   bool has_stamp_ = false;
   Timestamp last_stamp_ = 0;
 };
+
+/// The column names of a table whose first line gives them after a '#'. Throws InputError where it
+/// does not.
+[[nodiscard]] std::vector<std::string> ReadColumnNames(std::string_view text,
+                                                       const std::string& file);
+
+/// Three numbers, the first one in `column`.
+[[nodiscard]] Eigen::Vector3d ReadVector(const CsvReader& reader, int column);
+
+/// The quaternion whose first number stands in `column`, normalized, its sign kept; `w_first`:
+/// w x y z, else x y z w. Throws InputError where its length is off 1 by more than a thousandth.
+[[nodiscard]] Eigen::Quaterniond ReadQuaternion(const CsvReader& reader, int column, bool w_first);
 
 /// Stamps that files may hold: from 0 to this many nanoseconds (the year 2096), so that no
 /// difference of two leaves 64 bits.

@@ -1,7 +1,6 @@
 #include "common/dataset/ground_truth.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "common/dataset/csv_reader.h"
 #include "common/support/numeric_text.h"
@@ -30,25 +29,6 @@ const std::vector<std::string> kStateColumns = {"timestamp [ns]",
                                                 "b_a_RS_S_x [m s^-2]",
                                                 "b_a_RS_S_y [m s^-2]",
                                                 "b_a_RS_S_z [m s^-2]"};
-
-Eigen::Vector3d ReadVector(const CsvReader& reader, int column) {
-  return {reader.Number(column), reader.Number(column + 1), reader.Number(column + 2)};
-}
-
-/// The quaternion whose first number stands in `column`; `w_first`: w x y z, else x y z w.
-Eigen::Quaterniond ReadQuaternion(const CsvReader& reader, int column, bool w_first) {
-  const Eigen::Vector4d q(reader.Number(column), reader.Number(column + 1),
-                          reader.Number(column + 2), reader.Number(column + 3));
-  const double length = q.norm();
-  // Files are rounded: EuRoC's to 1e-6. Beyond a thousandth it is no rotation.
-  if (!(std::abs(length - 1.0) <= 1e-3)) {
-    reader.Fail(column, "is no rotation: expected a quaternion of length 1, got length " +
-                            FormatNumber(length));
-  }
-  const Eigen::Vector4d unit = q / length;
-  return w_first ? Eigen::Quaterniond(unit[0], unit[1], unit[2], unit[3])
-                 : Eigen::Quaterniond(unit[3], unit[0], unit[1], unit[2]);
-}
 
 void AppendVector(const Eigen::Vector3d& vector, char separator, std::string* text) {
   for (int axis = 0; axis < 3; ++axis) {

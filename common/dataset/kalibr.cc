@@ -51,13 +51,8 @@ ImuSensor ReadKalibrImu(std::string_view yaml, const std::string& file) {
   YamlMap top(root, file);
   YamlMap map = top.Has("imu0") ? top.Map("imu0") : top;
   PassOver(&map, {"rostopic", "model", "T_i_b", "time_offset"});
-  // A density of zero makes covariances singular.
-  const NumberRange positive{1e-15, 1e3};
   ImuSensor sensor;
-  sensor.noise.gyroscope_density = map.Number("gyroscope_noise_density", positive);
-  sensor.noise.gyroscope_random_walk = map.Number("gyroscope_random_walk", positive);
-  sensor.noise.accelerometer_density = map.Number("accelerometer_noise_density", positive);
-  sensor.noise.accelerometer_random_walk = map.Number("accelerometer_random_walk", positive);
+  sensor.noise = ReadImuNoise(&map);
   sensor.rate_hz = map.NumberOr("update_rate", 0.0, {1e-3, 1e6});
   (void)map.UnknownKeys();
   return sensor;

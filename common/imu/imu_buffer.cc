@@ -1,8 +1,8 @@
 #include "common/imu/imu_buffer.h"
 
-#include <glog/logging.h>
-
 #include <algorithm>
+
+#include "common/support/logging.h"
 
 namespace duet {
 namespace {

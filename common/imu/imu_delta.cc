@@ -1,12 +1,11 @@
 #include "common/imu/imu_delta.h"
 
-#include <glog/logging.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "common/geometry/so3.h"
 #include "common/imu/motion_increment.h"
+#include "common/support/logging.h"
 
 // How Jacobians and covariance come about. With e = (theta, s, y), theta the left error of R in the
 // frame of the start, and rate errors d_omega, d_a:

@@ -1,9 +1,10 @@
 #include "common/measurement/calibration.h"
 
-#include <glog/logging.h>
+#include <algorithm>
 
 #include "common/geometry/so3.h"
 #include "common/imu/imu_delta.h"
+#include "common/support/logging.h"
 
 namespace duet {
 namespace {
@@ -55,27 +56,13 @@ Choice ChoiceOf(const CalibrationPriors& p, CalibrationBlock block) {
   LOG(FATAL) << "unknown calibration block";
 }
 
-// Where a block of T matrices starts among the 27 numbers; -1 for other blocks.
-int ImuOffset(CalibrationBlock block) {
-  switch (block) {
-    case CalibrationBlock::kTg:
-      return 0;
-    case CalibrationBlock::kTs:
-      return 9;
-    case CalibrationBlock::kTa:
-      return 18;
-    default:
-      return -1;
-  }
-}
-
 // Value of a block that is a plain vector (all but R_CB).
 Eigen::VectorXd VectorOf(const RigCalibration& rig, const CalibrationLayout::Entry& e) {
   switch (e.block) {
     case CalibrationBlock::kTg:
     case CalibrationBlock::kTs:
     case CalibrationBlock::kTa:
-      return ToVector(rig.imu).segment<9>(ImuOffset(e.block));
+      return ToVector(rig.imu).segment<9>(ImuBlockOffset(e.block));
     case CalibrationBlock::kExtrinsicTranslation:
       return rig.cameras[e.camera].p_CB;
     case CalibrationBlock::kIntrinsics:
@@ -98,7 +85,7 @@ void AddToBlock(const CalibrationLayout::Entry& e, const Eigen::VectorXd& d, Rig
     case CalibrationBlock::kTs:
     case CalibrationBlock::kTa: {
       Eigen::Matrix<double, 27, 1> vector = ToVector(rig->imu);
-      vector.segment<9>(ImuOffset(e.block)) += d;
+      vector.segment<9>(ImuBlockOffset(e.block)) += d;
       rig->imu = ImuCalibrationFromVector(vector);
       return;
     }
@@ -178,6 +165,11 @@ CalibrationLayout::CalibrationLayout(const CalibrationPriors& priors, const RigC
 int CalibrationLayout::OffsetOf(CalibrationBlock block, int camera) const {
   if (offset_of_.empty()) return -1;
   return offset_of_[static_cast<int>(block) * (camera_count_ + 1) + camera + 1];
+}
+
+bool CalibrationLayout::EstimatesImu() const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [](const Entry& entry) { return IsImuBlock(entry.block); });
 }
 
 Eigen::VectorXd CalibrationLayout::PriorSigmas() const {

@@ -39,6 +39,16 @@ enum class CalibrationBlock {
   kReadoutTime,           // t_r, 1
 };
 
+/// True for T_g, T_s, T_a, the part of the calibration that an IMU delta depends on.
+[[nodiscard]] constexpr bool IsImuBlock(CalibrationBlock block) {
+  return block == CalibrationBlock::kTg || block == CalibrationBlock::kTs ||
+         block == CalibrationBlock::kTa;
+}
+/// Where such a block starts among the 27 numbers.
+[[nodiscard]] constexpr int ImuBlockOffset(CalibrationBlock block) {
+  return block == CalibrationBlock::kTg ? 0 : block == CalibrationBlock::kTs ? 9 : 18;
+}
+
 /// Which blocks an estimator estimates and how well they are known before (1 sigma).
 struct CalibrationPriors {
   /// A block is estimated where its flag is set, else fixed at its told value.
@@ -114,6 +124,8 @@ class CalibrationLayout {
   /// Offset of a block in the error vector, -1 where it is fixed. `camera` is -1 for T matrices and
   /// times.
   [[nodiscard]] int OffsetOf(CalibrationBlock block, int camera = -1) const;
+  /// True where a T matrix is estimated: an IMU delta then needs its Jacobians to them.
+  [[nodiscard]] bool EstimatesImu() const;
   /// The prior's standard deviations, one a component.
   [[nodiscard]] Eigen::VectorXd PriorSigmas() const;
   /// "cam0.p_CB.x", "t_d", ...: names for files, one a component.

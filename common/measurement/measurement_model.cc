@@ -1,8 +1,7 @@
 #include "common/measurement/measurement_model.h"
 
-#include <glog/logging.h>
-
 #include "common/geometry/so3.h"
+#include "common/support/logging.h"
 
 namespace duet {
 

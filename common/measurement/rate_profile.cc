@@ -1,10 +1,9 @@
 #include "common/measurement/rate_profile.h"
 
-#include <glog/logging.h>
-
 #include <algorithm>
 
 #include "common/imu/motion_increment.h"
+#include "common/support/logging.h"
 
 namespace duet {
 namespace {

@@ -44,6 +44,9 @@ std::string NearestName(std::string_view name, const std::vector<std::string>& c
   std::string best;
   std::size_t best_distance = limit + 1;
   for (const std::string& candidate : candidates) {
+    const std::size_t at_least = candidate.size() > name.size() ? candidate.size() - name.size()
+                                                                : name.size() - candidate.size();
+    if (at_least >= best_distance) continue;
     const std::size_t distance = EditDistance(lower, Lower(candidate));
     if (distance < best_distance && distance < candidate.size()) {
       best = candidate;

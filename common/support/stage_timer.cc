@@ -5,15 +5,12 @@
 #include <cstring>
 
 namespace duet {
-namespace {
 
 double ThreadCpuMs() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
 }
-
-}  // namespace
 
 StageTimer::Scope::Scope(StageTimer* timer, const char* stage)
     : timer_(timer), stage_(stage), start_ms_(timer == nullptr ? 0.0 : ThreadCpuMs()) {}

@@ -5,6 +5,9 @@
 
 namespace duet {
 
+/// CPU time of the calling thread so far [ms].
+[[nodiscard]] double ThreadCpuMs();
+
 /// Thread CPU time by named stage, one row a frame; handed into estimators by the caller, who reads
 /// it. Nothing an estimator computes depends on it.
 class StageTimer {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "test/acceptance/program.h"
 #include "test/acceptance/small_recording.h"
@@ -192,6 +193,47 @@ TEST_F(SimulatedTest, AFailureIsAResultOfAComparisonAndStatusThreeOfARun) {
   EXPECT_EQ(compare.status, 0) << compare.err;
   EXPECT_THAT(compare.out, HasSubstr("rest"));
   EXPECT_EQ(ReadJson(folder_ / "compare/comparison.json")["msckf"]["status"], "failed");
+}
+
+/// Cuts what is before `first` off a table.
+void KeepRowsFrom(const fs::path& table, long long first) {
+  std::istringstream rows(ReadFile(table));
+  std::string kept;
+  for (std::string row; std::getline(rows, row);) {
+    if (row.front() == '#' || std::stoll(row) >= first) kept += row + "\n";
+  }
+  WriteFile(table, kept);
+}
+
+TEST_F(SimulatedTest, ALateStartIsAWarningInRecordAndTable) {
+  Simulate("4");
+  const fs::path truth = fs::path(dataset_) / "mav0/state_groundtruth_estimate0/data.csv";
+  ASSERT_EQ(RunDuet({"run", "--backend=msckf", "--init=groundtruth", "--dataset", dataset_, "--out",
+                     folder_ / "early"})
+                .status,
+            0);
+  const Json early = ReadJson(folder_ / "early/manifest.json");
+  EXPECT_TRUE(early["warnings"].empty()) << early["warnings"];
+  const long long first = early["dataset"]["first_frame_ns"];
+
+  KeepRowsFrom(truth, first + 1'000'000'000);  // a quarter of the recording without a truth
+  const ProgramResult compare =
+      RunDuet({"compare", "--init=groundtruth", "--dataset", dataset_, "--out", folder_ / "late"});
+  EXPECT_EQ(compare.status, 0) << compare.err;
+  const Json json = ReadJson(folder_ / "late/comparison.json");
+  ASSERT_EQ(json["warnings"].size(), 2U);
+  for (const std::string backend : {"msckf", "window"}) {
+    const std::string warning = backend + " started only after 1.";
+    EXPECT_THAT(compare.err, HasSubstr(warning));
+    EXPECT_THAT(compare.out, HasSubstr("WARNING: " + warning));
+    const Json manifest = ReadJson(folder_ / ("late/" + backend + "/manifest.json"));
+    ASSERT_EQ(manifest["warnings"].size(), 1U);
+    EXPECT_THAT(manifest["warnings"][0].get<std::string>(), HasSubstr("truth"));  // was missing
+    EXPECT_GE(json[backend]["waiting_frames"], 20);
+    EXPECT_GE(json[backend]["waited_s"], 1.0);
+  }
+  EXPECT_THAT(compare.out, HasSubstr("waited for the start [s]"));
+  EXPECT_EQ(ReadJson(folder_ / "late/manifest.json")["warnings"].size(), 2U);
 }
 
 TEST_F(SimulatedTest, EvaluateTakesARecordsTrajectory) {

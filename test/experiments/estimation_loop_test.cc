@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "common/support/text_file.h"
+#include "experiments/late_start.h"
 
 namespace duet {
 namespace {
@@ -114,7 +115,18 @@ TEST_F(EstimationLoopTest, FramesBeforeTheStartWaitAndAreCounted) {
   EXPECT_GT(summary_.waiting, 0);
   EXPECT_EQ(summary_.waiting + summary_.tracking, kFrames);
   EXPECT_EQ(estimator.initialized_at, kStart + summary_.waiting * kFrameStep);
+  EXPECT_DOUBLE_EQ(summary_.waited_s, 1e-9 * static_cast<double>(summary_.waiting * kFrameStep));
   EXPECT_THAT(ReadTextFile(folder_ / "features.csv"), HasSubstr("1000000000,initializing,1,0"));
+}
+
+TEST(LateStartTest, IsWarnedOfFromAFifthOfTheFramesOrFiveSeconds) {
+  EXPECT_FALSE(LateStartWarning({.frames_waited = 0, .frames = 0}));
+  EXPECT_FALSE(LateStartWarning({.frames_waited = 0, .frames = 10}));
+  EXPECT_FALSE(LateStartWarning({.frames_waited = 2, .frames = 10, .waited_s = 0.1}));
+  EXPECT_FALSE(LateStartWarning({.frames_waited = 100, .frames = 1000, .waited_s = 5.0}));
+  EXPECT_TRUE(LateStartWarning({.frames_waited = 101, .frames = 1000, .waited_s = 5.05}));
+  EXPECT_EQ(LateStartWarning({.frames_waited = 3, .frames = 10, .waited_s = 0.15, .missing = "x"}),
+            "started only after 0.15 s: 3 of 10 frames (30.0 %) have no estimate; until then x");
 }
 
 TEST_F(EstimationLoopTest, WithoutAStartTheRunFails) {

@@ -30,12 +30,20 @@ TEST(TimingLogTest, ColumnsReadBackWithoutTheFramesThatLackThem) {
             "#timestamp [ns],decode [ms],estimator [ms],estimator.update [ms]\n"
             "10,1.5000,,\n"
             "20,0.2500,3.0000,0.5000\n");
-  EXPECT_THAT(ReadTiming(path), ElementsAre(Pair("decode", ElementsAre(1.5, 0.25)),
-                                            Pair("estimator", ElementsAre(3.0)),
-                                            Pair("estimator.update", ElementsAre(0.5))));
-  WriteTextFile(path, "#timestamp [ns],decode [ms]\n10,x\n");
-  EXPECT_THROW((void)ReadTiming(path), InputError);
+  EXPECT_THAT(
+      ReadTimingTable(ReadTextFile(path), "timing.csv"),
+      ElementsAre(Pair("decode", ElementsAre(1.5, 0.25)), Pair("estimator", ElementsAre(3.0)),
+                  Pair("estimator.update", ElementsAre(0.5))));
   std::filesystem::remove(path);
+}
+
+TEST(TimingLogTest, RefusesWhatIsNoTimingTable) {
+  for (const char* text :
+       {"#timestamp [ns],decode [ms]\n10,x\n", "#timestamp [ns],decode [ms]\n10,1,2\n",
+        "#timestamp [ns],decode [ms]\n10,nan\n", "#timestamp [ns],decode [ms]\n10,1.5",
+        "#timestamp [ns],decode\n10,1.5\n", "10,1.5\n"}) {
+    EXPECT_THROW((void)ReadTimingTable(text, "timing.csv"), InputError) << text;
+  }
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ TEST(Linearization, EqualsNumericDifferentiationOverStateAndCalibration) {
           moved.state.Correct(1e-2 * error, 1.0, 1.0);
           return moved.Residual();
         },
-        scene.state.size());
+        Eigen::VectorXd::Zero(scene.state.size()));
     // T matrices act on pixels within tau only: left out by definition, frozen in the test too.
     // 1e-7: the integration error of the motion within tau, of which only the end is
     // differentiated.
@@ -112,7 +112,7 @@ TEST(Linearization, EqualsNumericDifferentiationOverStateAndCalibration) {
           moved.landmark += 1e-2 * error;
           return moved.Residual();
         },
-        3);
+        Eigen::VectorXd::Zero(3));
     EXPECT_LT(testing::RelativeDifference(1e-2 * result.H_f, numeric_f), 1e-8);
   }
 }

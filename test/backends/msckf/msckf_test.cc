@@ -167,17 +167,42 @@ TEST(Msckf, OutliersAreRefused) {
   const SimulatedRecording recording = Simulate(options);
   Feeder feeder(recording, SharedOptions());
   feeder.StartAtTruth();
-  int gated = 0;
+  int gated = 0;  // as a whole, or but for some pixels
   int refused = 0;
   double error_m = 0.0;
   for (const TrackFrameSet& frames : recording.frames) {
     const EstimatorOutput& output = feeder.Feed(frames);
-    gated += output.features.gated;
+    gated += output.features.gated + output.features.cleaned;
     refused += output.features.not_triangulated;
     error_m = ErrorOf(output, recording).segment<3>(3).norm();
   }
   EXPECT_GT(gated + refused, 200);
   EXPECT_LT(error_m, 0.15);
+}
+
+TEST(Msckf, OneBadPixelDoesNotCostATrack) {
+  SimulationOptions simulation = Room(2, 10.0);
+  simulation.outlier_share = 0.02;
+  const SimulatedRecording recording = Simulate(simulation);
+  int gated[2] = {};
+  int used[2] = {};
+  int cleaned[2] = {};
+  for (const bool remove : {false, true}) {
+    MsckfOptions options;
+    options.remove_outliers = remove;
+    Feeder feeder(recording, SharedOptions(), options);
+    feeder.StartAtTruth();
+    for (const TrackFrameSet& frames : recording.frames) {
+      const FeatureCounts& counts = feeder.Feed(frames).features;
+      gated[remove] += counts.gated;
+      used[remove] += counts.used;
+      cleaned[remove] += counts.cleaned;
+    }
+  }
+  EXPECT_EQ(cleaned[false], 0);
+  EXPECT_GT(cleaned[true], 200);
+  EXPECT_LT(gated[true], gated[false] / 3);
+  EXPECT_GT(used[true], used[false] + 200);
 }
 
 TEST(Msckf, WaitsForItsStart) {

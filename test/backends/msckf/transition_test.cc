@@ -62,7 +62,8 @@ TEST(Transition, EqualsTheDerivativeOfTheIntegratedState) {
   const Transition transition = MakeTransition(delta, interval.start.nav, end, kGravity);
 
   const Eigen::MatrixXd numeric = testing::NumericJacobian(
-      [&](const Eigen::VectorXd& error) { return EndError(interval, end, error); }, 42);
+      [&](const Eigen::VectorXd& error) { return EndError(interval, end, error); },
+      Eigen::VectorXd::Zero(42));
   // The delta's Jacobians are quadratures of fourth order in the 5 ms step: 1e-7 of their size.
   EXPECT_LT((transition.Phi.topRows<9>() - numeric.leftCols<15>()).cwiseAbs().maxCoeff(), 1e-7);
   EXPECT_LT((transition.Gamma - numeric.rightCols<27>()).cwiseAbs().maxCoeff(), 2e-7);

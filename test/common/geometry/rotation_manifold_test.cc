@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "common/geometry/so3.h"
-#include "test/common/geometry/numeric_jacobian.h"
 #include "test/common/geometry/rotation_vectors.h"
+#include "test/numeric_jacobian.h"
 
 namespace duet {
 namespace {
@@ -36,7 +36,7 @@ Drop MinusJacobian(const Eigen::Vector4d& x) {
   return J;
 }
 
-class RotationManifoldTest : public testing::Test {
+class RotationManifoldTest : public ::testing::Test {
  protected:
   Eigen::Vector4d RandomRotation() {
     Eigen::Vector4d x;
@@ -81,16 +81,17 @@ TEST_F(RotationManifoldTest, PlusUndoesMinusSignIncluded) {
 TEST_F(RotationManifoldTest, JacobiansAreTheDerivatives) {
   for (int i = 0; i < 100; ++i) {
     const Eigen::Vector4d x = RandomRotation();
-    const Eigen::Matrix<double, 4, 3> lift = NumericJacobian<4, 3>(
-        [&](const Eigen::Vector3d& d) { return Plus(x, d); }, Eigen::Vector3d::Zero());
+    const Eigen::Matrix<double, 4, 3> lift = testing::NumericJacobian(
+        [&](const Eigen::Vector3d& d) { return Plus(x, d); }, Eigen::Vector3d::Zero(), 1e-2);
     EXPECT_LT((PlusJacobian(x) - lift).norm(), 1e-13);
     // Minus is defined on unit quaternions: its derivative counts along Plus.
-    const Eigen::Matrix3d drop = NumericJacobian<3, 3>(
-        [&](const Eigen::Vector3d& d) { return Minus(Plus(x, d), x); }, Eigen::Vector3d::Zero());
+    const Eigen::Matrix3d drop =
+        testing::NumericJacobian([&](const Eigen::Vector3d& d) { return Minus(Plus(x, d), x); },
+                                 Eigen::Vector3d::Zero(), 1e-2);
     EXPECT_LT((MinusJacobian(x) * lift - drop).norm(), 1e-12);
     // Off the sphere too: Minus does not depend on the length of y.
     const Eigen::Matrix<double, 3, 4> ambient =
-        NumericJacobian<3, 4>([&](const Eigen::Vector4d& y) { return Minus(y, x); }, x, 1e-3);
+        testing::NumericJacobian([&](const Eigen::Vector4d& y) { return Minus(y, x); }, x, 1e-3);
     EXPECT_LT((MinusJacobian(x) - ambient).norm(), 1e-12);
   }
 }
@@ -124,7 +125,7 @@ TEST_F(RotationManifoldTest, LiftedTangentJacobianIsTheAmbientDerivative) {
       return R * point;
     };
     const Eigen::Matrix3d J_tangent = -Hat(rotate(x));
-    const Eigen::Matrix<double, 3, 4> ambient = NumericJacobian<3, 4>(rotate, x, 1e-3);
+    const Eigen::Matrix<double, 3, 4> ambient = testing::NumericJacobian(rotate, x, 1e-3);
     // 1e-12 of NumericJacobian, twelve entries, points up to 4 from the origin.
     EXPECT_LT((J_tangent * MinusJacobian(x) - ambient).norm(), 1e-11);
   }

@@ -112,7 +112,7 @@ TEST(ImuDelta, JacobiansAreDerivativesOfTheIntegrator) {
       const ImuCalibration c = ImuCalibrationFromVector(ToVector(calibration) + x.segment<27>(6));
       return Difference(IntegrateImu(readings, b, c, kNoise), delta);
     };
-    const Eigen::MatrixXd numeric = NumericJacobian(moved, 33);
+    const Eigen::MatrixXd numeric = NumericJacobian(moved, Eigen::VectorXd::Zero(33));
     // Simpson's rule along the step differs from the derivative of Runge-Kutta by O(h^3): 1e-6 of
     // the scale of each block at h |omega| = 1e-2.
     EXPECT_LT(RelativeDifference(delta.J_b_g, numeric.leftCols<3>()), 1e-6);
@@ -237,7 +237,7 @@ TEST(ImuModel, CorrectionInvertsTheErrorModelAndItsJacobiansAreDerivatives) {
           stacked << r.omega_B, r.a_B;
           return stacked;
         },
-        27);
+        Eigen::VectorXd::Zero(27));
     EXPECT_LT(RelativeDifference(J_omega, numeric.topRows<3>()), 1e-8);
     EXPECT_LT(RelativeDifference(J_a, numeric.bottomRows<3>()), 1e-8);
   }

@@ -125,7 +125,7 @@ TEST(PredictPixel, JacobiansAreDerivativesAtRandomStates) {
     };
     // Steps of 1e-4 keep the extrapolated differences good to 1e-9; tau is differentiated apart
     // with shorter steps that rarely cross an IMU sample, where rates have a kink.
-    const Eigen::MatrixXd N = NumericJacobian(moved, 41, 1e-4);
+    const Eigen::MatrixXd N = NumericJacobian(moved, Eigen::VectorXd::Zero(41), 1e-4);
     // Floors are the size of the terms that a small block is the difference of (camera 0 seen from
     // itself) or that its rounding comes from (px over a step of 1e-4).
     constexpr double kTolerance = 1e-6;
@@ -146,7 +146,7 @@ TEST(PredictPixel, JacobiansAreDerivativesAtRandomStates) {
       all.tail<2>() = x;
       return moved(all);
     };
-    const Eigen::MatrixXd T = NumericJacobian(moved_times, 2, 1e-6);
+    const Eigen::MatrixXd T = NumericJacobian(moved_times, Eigen::VectorXd::Zero(2), 1e-6);
     EXPECT_LT(RelativeDifference(J.t_d, T.col(0)), 1e-5);
     EXPECT_LT(RelativeDifference(J.t_r, T.col(1), 1.0), 1e-5);
   }

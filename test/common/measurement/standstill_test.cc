@@ -71,7 +71,7 @@ TEST(StandstillResidual, JacobiansHoldAtRestAndYawStaysFree) {
                                    BoxPlus(j, Vector9d(x.tail<9>())), {})
                     .r;
       },
-      18);
+      Eigen::VectorXd::Zero(18));
   // Linearized at no rotation: right to the size of the residual rotation, 2.5e-4 rad / 2.
   EXPECT_LT((N.leftCols<9>() - s.J_i).cwiseAbs().maxCoeff(), 2e-4);
   EXPECT_LT((N.rightCols<9>() - s.J_j).cwiseAbs().maxCoeff(), 2e-4);
