@@ -1,6 +1,7 @@
 #include "experiments/simulation/render/band_geometry.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace duet {
@@ -54,6 +55,38 @@ bool Outside(const BandGeometry::Candidate& candidate, const RayBox& view) {
   }
   return sides.outside();
 }
+
+// A quick look before the corners are made: most surfaces of a world are out of view by far.
+class SphereTest {
+ public:
+  explicit SphereTest(const RayBox& view) {
+    const Eigen::Vector2d low = view.min().cast<double>();
+    const Eigen::Vector2d high = view.max().cast<double>();
+    inward_ << 1.0, 0.0, -low.x(),  // one side a row
+        -1.0, 0.0, high.x(),        //
+        0.0, 1.0, -low.y(),         //
+        0.0, -1.0, high.y();
+    inward_.rowwise().normalize();
+  }
+
+  // True where the sphere around a surface lies beyond one side at all poses.
+  [[nodiscard]] bool Outside(
+      const Surface& surface,
+      const std::array<std::vector<BodyView>, BandGeometry::kPoses>& views) const {
+    const Eigen::Vector3d center = surface.corner + 0.5 * surface.width_m * surface.u_axis +
+                                   0.5 * surface.height_m * surface.v_axis;
+    const double radius = 0.5 * std::hypot(surface.width_m, surface.height_m);
+    Eigen::Array4d nearest = Eigen::Array4d::Constant(-1e300);
+    for (const std::vector<BodyView>& bodies : views) {
+      const BodyView& body = bodies[static_cast<std::size_t>(surface.body)];
+      nearest = nearest.max((inward_ * (body.R * center + body.p)).array());
+    }
+    return nearest.minCoeff() < -radius;
+  }
+
+ private:
+  Eigen::Matrix<double, 4, 3> inward_;
+};
 
 BandGeometry::Candidate MakeCandidate(
     const Surface& surface, int index,
@@ -127,13 +160,15 @@ BandGeometry::BandGeometry(const TrueCamera& camera, const BandShutter& shutter,
     begin_s = time_of(last_line, 0);
     end_s = time_of(shutter.first_line, last_instant);
   }
-  std::array<std::vector<BodyView>, kPoses> bounds = {
+  const std::array<std::vector<BodyView>, kPoses> bounds = {
       BodyViews(camera, shutter.camera, begin_s),
       BodyViews(camera, shutter.camera, 0.5 * (begin_s + end_s)),
       BodyViews(camera, shutter.camera, end_s)};
   const std::vector<Surface>& surfaces = camera.world().surfaces();
+  const SphereTest spheres(view);
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    Candidate candidate = MakeCandidate(surfaces[i], static_cast<int>(i), bounds);
+    if (spheres.Outside(surfaces[i], bounds)) continue;
+    const Candidate candidate = MakeCandidate(surfaces[i], static_cast<int>(i), bounds);
     if (SeenAtAll(candidate) && !Outside(candidate, view)) candidates_.push_back(candidate);
   }
 

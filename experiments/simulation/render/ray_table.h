@@ -58,6 +58,10 @@ class RayTable {
     return {centers_[Index(u, v, width_)], corners_[low], corners_[low + 1], corners_[high],
             corners_[high + 1]};
   }
+  /// The ray at (u - 0.5, v - 0.5), not finite where there is none.
+  [[nodiscard]] const Eigen::Vector2f& Corner(int u, int v) const {
+    return corners_[Index(u, v, width_ + 1)];
+  }
   /// The box of a tile's rays, widened by a pixel; empty where no pixel of it is valid.
   [[nodiscard]] RayBox BoxOf(const Tile& tile) const;
 

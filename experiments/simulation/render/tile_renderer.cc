@@ -119,41 +119,77 @@ void TileRenderer::Render(const BandGeometry& band, int instants, const Tile& ti
   } else {
     *scratch = {};
   }
+  for (int v = tile.v; v < tile.v + tile.height; ++v) {
+    float* row = light + static_cast<std::ptrdiff_t>(v) * rays_.width_px() + tile.u;
+    std::fill(row, row + tile.width, 0.0F);
+  }
+  double empty = 0.0;
+  for (int instant = 0; instant < instants; ++instant) {
+    empty += RenderInstant(band, instants, instant, tile, *scratch, light);
+  }
+  double valid = 0.0;
+  for (int v = tile.v; v < tile.v + tile.height; ++v) {
+    for (int u = tile.u; u < tile.u + tile.width; ++u) valid += rays_.valid(u, v) ? 1.0 : 0.0;
+  }
+  counts->empty += empty / instants;
+  counts->seen += valid - empty / instants;
+}
+
+double TileRenderer::RenderInstant(const BandGeometry& band, int instants, int instant,
+                                   const Tile& tile, const TileCandidates& candidates,
+                                   float* light) const {
   const int edge_samples = (sampling_.edge_samples + instants - 1) / instants;
   const float share = 1.0F / static_cast<float>(instants);
-  const int only = scratch->filled ? scratch->list.front().candidate : kNothing;
-  const bool trivial = scratch->filled || scratch->list.empty();
-  for (int v = tile.v; v < tile.v + tile.height; ++v) {
-    for (int u = tile.u; u < tile.u + tile.width; ++u) {
-      float* out = light + static_cast<std::ptrdiff_t>(v) * rays_.width_px() + u;
-      *out = 0.0F;
-      if (!rays_.valid(u, v)) continue;
-      const PixelRays rays = rays_.At(u, v);
-      double empty = 0.0;
-      float sum = 0.0F;
-      for (int instant = 0; instant < instants; ++instant) {
-        const Sight sight = {band, *scratch, band.Views(by_columns_ ? u : v, instant)};
-        int seen = only;
-        bool edge = false;
-        if (!trivial) {
-          seen = NearestOf(sight, rays.low_low);
-          edge = NearestOf(sight, rays.high_low) != seen ||
-                 NearestOf(sight, rays.low_high) != seen ||
-                 NearestOf(sight, rays.high_high) != seen;
-        }
-        if (edge) {
-          sum += ShadeEdge(sight, rays, edge_samples, &empty);
-        } else if (seen != kNothing) {
-          sum += Shade(sight, seen, rays.center, rays.ByU(), rays.ByV(), sampling_.four_samples);
-        } else {
-          empty += 1.0;
-        }
+  const bool trivial = candidates.filled || candidates.list.empty();
+  const int only = candidates.filled ? candidates.list.front().candidate : kNothing;
+  const int first_line = by_columns_ ? tile.u : tile.v;
+  const int lines = by_columns_ ? tile.width : tile.height;
+  const int first_across = by_columns_ ? tile.v : tile.u;
+  const int across = by_columns_ ? tile.height : tile.width;
+  CHECK_LE(across, kMaxTile_px);
+  // What the corners see along the borders of a line, as that line's views have it.
+  std::array<int, kMaxTile_px + 1> before{}, after{};
+  const auto look_along = [&](const Sight& sight, int border,
+                              std::array<int, kMaxTile_px + 1>* ids) {
+    for (int i = 0; i <= across; ++i) {
+      const int place = first_across + i;
+      (*ids)[static_cast<std::size_t>(i)] =
+          NearestOf(sight, by_columns_ ? rays_.Corner(border, place) : rays_.Corner(place, border));
+    }
+  };
+
+  double empty = 0.0;
+  for (int line = first_line; line < first_line + lines; ++line) {
+    const Sight sight = {band, candidates, band.Views(line, instant)};
+    if (!trivial) {
+      if (line > first_line && !band.lines_differ()) {
+        before = after;
+      } else {
+        look_along(sight, line, &before);
       }
-      *out = share * sum;
-      counts->empty += empty / instants;
-      counts->seen += 1.0 - empty / instants;
+      look_along(sight, line + 1, &after);
+    }
+    for (int i = 0; i < across; ++i) {
+      const int u = by_columns_ ? line : first_across + i;
+      const int v = by_columns_ ? first_across + i : line;
+      if (!rays_.valid(u, v)) continue;
+      const auto place = static_cast<std::size_t>(i);
+      const int seen = trivial ? only : before[place];
+      const bool edge = !trivial && (before[place + 1] != seen || after[place] != seen ||
+                                     after[place + 1] != seen);
+      float value = 0.0F;
+      if (edge) {
+        value = ShadeEdge(sight, rays_.At(u, v), edge_samples, &empty);
+      } else if (seen != kNothing) {
+        const PixelRays rays = rays_.At(u, v);
+        value = Shade(sight, seen, rays.center, rays.ByU(), rays.ByV(), sampling_.four_samples);
+      } else {
+        empty += 1.0;
+      }
+      light[static_cast<std::ptrdiff_t>(v) * rays_.width_px() + u] += share * value;
     }
   }
+  return empty;
 }
 
 }  // namespace duet

@@ -23,6 +23,8 @@ struct PixelCounts {
 /// 1 / samples px. Surfaces narrower than a pixel may be missed between corners.
 class TileRenderer {
  public:
+  static constexpr int kMaxTile_px = 32;
+
   TileRenderer(const World& world, const RayTable& rays, const RenderSampling& sampling,
                bool by_columns);
 
@@ -46,6 +48,9 @@ class TileRenderer {
     const TileCandidates& tile;
     const PlaneView* views;
   };
+  // Adds one instant's share of the light. Returns how many pixels see nothing.
+  double RenderInstant(const BandGeometry& band, int instants, int instant, const Tile& tile,
+                       const TileCandidates& candidates, float* light) const;
   static int NearestOf(const Sight& sight, const Eigen::Vector2f& ray);
   [[nodiscard]] float Shade(const Sight& sight, int candidate, const Eigen::Vector2f& ray,
                             const Eigen::Vector2f& by_u, const Eigen::Vector2f& by_v,

@@ -41,7 +41,7 @@ RenderOptions Clean() {
 
 struct Judged {
   TrackAccuracyReport report;
-  TrackAccuracyReport without_shutter;
+  TrackAccuracyReport without_shutter;  ///< empty for a global shutter
 };
 
 Judged TrackAndJudge(const RigCalibration& rig, const Vector3d& velocity, const Vector3d& omega,
@@ -61,7 +61,7 @@ Judged TrackAndJudge(const RigCalibration& rig, const Vector3d& velocity, const 
     const cv::Mat image = renderer.Render(0, stamp).image;
     const TrackFrameSet& tracks = frontend.Process(stamp, {&image, 1});
     accuracy.Add(tracks.frames[0]);
-    accuracy_without.Add(tracks.frames[0]);
+    if (rig.t_r_s != 0.0) accuracy_without.Add(tracks.frames[0]);
   }
   return {accuracy.Report(), accuracy_without.Report()};
 }
@@ -85,8 +85,8 @@ TEST(TrackAccuracy, FrontEndFollowsRenderedImagesToATenthOfAPixel) {
 TEST(TrackAccuracy, RollingShutterIsInTheTruth) {
   RigCalibration rig = ForwardRig(HalfCamera());
   rig.t_r_s = 0.02;
-  const Judged judged = TrackAndJudge(rig, {0.2, 0.3, 0.0}, {0.4, 0.3, 0.9}, 12);
-  EXPECT_GT(judged.report.frame_to_frame.count, 300);
+  const Judged judged = TrackAndJudge(rig, {0.2, 0.3, 0.0}, {0.4, 0.3, 0.9}, 10);
+  EXPECT_GT(judged.report.frame_to_frame.count, 250);
   EXPECT_LT(judged.report.frame_to_frame.rmse, 0.25);
   EXPECT_GT(judged.without_shutter.frame_to_frame.rmse, 2.0 * judged.report.frame_to_frame.rmse);
 }
@@ -153,7 +153,7 @@ TEST(CompareByWarp, LeavesTheNoiseAlone) {
   const auto compare = [&](const TrueCamera& truth) {
     const Renderer renderer(options, TrueCamera(rig, room, motion, 0));
     return CompareByWarp(truth, 0, 0, renderer.Render(0, 0).image, kFrame,
-                         renderer.Render(0, kFrame).image, 3);
+                         renderer.Render(0, kFrame).image, 5);
   };
   const TrueCamera truth(rig, room, motion, 0);
   const WarpDifference clean = compare(truth);
