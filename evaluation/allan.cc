@@ -158,6 +158,7 @@ AllanFit FitAllan(const std::vector<AllanPoint>& curve) {
 
   const std::vector<Row> rows = RowsOf(curve);
   std::vector<double> means;
+  means.reserve(rows.size());
   for (const Row& row : rows) means.push_back(row.variance);
   Solution solution;
   constexpr int kRounds = 200;

@@ -99,8 +99,10 @@ ImuNoise ImuAllan::Noise() const {
 }
 
 ImuAllan AnalyzeImu(const std::vector<ImuSample>& imu, const std::string& file) {
-  const auto [begin, end] =
-      imu.size() < 2 ? std::pair<std::size_t, std::size_t>{0, imu.size()} : LongestStretch(imu);
+  std::pair<std::size_t, std::size_t> stretch = {0, imu.size()};
+  if (imu.size() >= 2) stretch = LongestStretch(imu);
+  const std::size_t begin = stretch.first;
+  const std::size_t end = stretch.second;
   const std::size_t count = end - begin;
   if (count < kFewestSamples) {
     throw InputError(file, 0, "",
@@ -238,8 +240,8 @@ std::string AllanScript(const ImuAllan& allan, const ImuNoise& told, const std::
             FormatNumber(std::pow(10.0, std::ceil(std::log10(3.0 * high)))) + "]\n  plot \\\n";
     const auto line = [&](const std::string& formula, const std::string& style,
                           const std::string& name, bool last) {
-      text += "    " + formula + " with lines " + style + " title '" + name + "'" +
-              (last ? "\n" : ", \\\n");
+      text.append("    ").append(formula).append(" with lines ").append(style);
+      text.append(" title '").append(name).append(last ? "'\n" : "', \\\n");
     };
     line("sqrt(" + FormatNumber(told_white) + "**2/x+" + FormatNumber(told_walk) + "**2*x/3)",
          "lw 5 lc rgb '#d8d8d8'", "as sensor.yaml tells", false);

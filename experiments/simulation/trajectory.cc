@@ -66,10 +66,10 @@ HarmonicTrajectory::HarmonicTrajectory(Channels channels, TimeWarp warp, double 
     : channels_(std::move(channels)), warp_(std::move(warp)), duration_s_(duration_s) {}
 
 Kinematics HarmonicTrajectory::At(double t_s) const {
-  const auto [s, s_dot, s_ddot] = warp_.At(t_s);
-  const auto chained = [&](const HarmonicChannel& channel) -> std::array<double, 3> {
-    const auto [value, d1, d2] = channel.At(s);
-    return {value, d1 * s_dot, d2 * s_dot * s_dot + d1 * s_ddot};
+  const std::array<double, 3> s = warp_.At(t_s);
+  const auto chained = [&s](const HarmonicChannel& channel) -> std::array<double, 3> {
+    const auto [value, d1, d2] = channel.At(s[0]);
+    return {value, d1 * s[1], d2 * s[1] * s[1] + d1 * s[2]};
   };
   const auto x = chained(channels_.x);
   const auto y = chained(channels_.y);

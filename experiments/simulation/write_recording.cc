@@ -34,8 +34,9 @@ Recording ToRecording(const SimulatedRecording& simulated) {
   const RigCalibration& rig = simulated.told_rig;
   Recording recording;
   recording.imu_sensor = {.noise = simulated.noise,
-                          .rate_hz = RateOf(simulated.imu.front().timestamp,
-                                            simulated.imu.back().timestamp, simulated.imu.size()),
+                          // The truth is there for lost samples too.
+                          .rate_hz = RateOf(simulated.truth.front().instant,
+                                            simulated.truth.back().instant, simulated.truth.size()),
                           .gravity = -simulated.g_G.z(),
                           .calibration = rig.imu};
   recording.imu = simulated.imu;
@@ -67,6 +68,17 @@ std::string TruthYaml(const SimulatedRecording& simulated) {
   text += "pixel_noise_sigma_px: " + FormatNumber(simulated.pixel_noise_px) + "\n";
   text += "time_offset_s: " + FormatNumber(rig.t_d_s) + "\n";
   text += "readout_time_s: " + FormatNumber(rig.t_r_s) + "\n";
+  if (simulated.dropped_imu_samples > 0) {
+    text += "imu_lost_samples: " + std::to_string(simulated.dropped_imu_samples) + "\n";
+  }
+  if (simulated.clipped_gyroscope_samples > 0) {
+    text +=
+        "gyroscope_clipped_samples: " + std::to_string(simulated.clipped_gyroscope_samples) + "\n";
+  }
+  if (simulated.clipped_accelerometer_samples > 0) {
+    text += "accelerometer_clipped_samples: " +
+            std::to_string(simulated.clipped_accelerometer_samples) + "\n";
+  }
   text += "T_g: " + ByRows(rig.imu.T_g) + "\n";
   text += "T_s: " + ByRows(rig.imu.T_s) + "\n";
   text += "T_a: " + ByRows(rig.imu.T_a) + "\n";

@@ -6,6 +6,7 @@
 
 #include "common/geometry/so3.h"
 #include "experiments/simulation/trajectory_library.h"
+#include "experiments/simulation/write_recording.h"
 
 namespace duet {
 namespace {
@@ -112,6 +113,25 @@ TEST(ImuSimulator, LostSamplesAreCountedAndChangeNoOther) {
     EXPECT_EQ(whole.samples[i].omega_m, sample.omega_m);
     EXPECT_EQ(whole.samples[i].a_m, sample.a_m);
   }
+}
+
+// Through the options of a simulation, and said in its truth.yaml.
+TEST(ImuSimulator, OptionsReachTheRecording) {
+  SimulationOptions options;
+  options.duration_s = 5.0;
+  options.imu_drop_share = 0.05;
+  options.gyroscope_range_rad_per_s = 0.2;
+  options.imu_jitter_s = 2e-4;
+  const SimulatedRecording recording = Simulate(options);
+  EXPECT_GT(recording.dropped_imu_samples, 0);
+  EXPECT_GT(recording.clipped_gyroscope_samples, 0);
+  EXPECT_EQ(recording.clipped_accelerometer_samples, 0);
+  const std::string yaml = TruthYaml(recording);
+  EXPECT_NE(yaml.find("imu_lost_samples: " + std::to_string(recording.dropped_imu_samples)),
+            std::string::npos);
+  EXPECT_NE(yaml.find("gyroscope_clipped_samples: "), std::string::npos);
+  EXPECT_EQ(yaml.find("accelerometer_clipped_samples"), std::string::npos);
+  EXPECT_NEAR(ToRecording(recording).imu_sensor.rate_hz, 200.0, 0.1);
 }
 
 }  // namespace
