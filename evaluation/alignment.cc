@@ -83,7 +83,7 @@ AlignmentResult AlignUmeyama(const Moments& m, AlignmentMode mode,
     return Refuse(AlignmentRefusal::kCoincidentEstimate);
   }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m.cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d d = svd.singularValues();
+  const Eigen::Vector3d& d = svd.singularValues();
   Eigen::Vector3d sign = Eigen::Vector3d::Ones();
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) sign.z() = -1.0;
   // A rotation about the first axis changes the sum by d2 + sign * d3 times (1 - cos): zero where
@@ -176,7 +176,7 @@ std::optional<Eigen::Quaterniond> FitYawToOrientations(const std::vector<PosePai
 std::optional<Eigen::Quaterniond> FitRotationToOrientations(const std::vector<PosePair>& pairs) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(SumOfErrors(pairs),
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d d = svd.singularValues();
+  const Eigen::Vector3d& d = svd.singularValues();
   const double sign = svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0 ? -1.0 : 1.0;
   if (d(1) + sign * d(2) <= kMinResultant * static_cast<double>(pairs.size())) return std::nullopt;
   const Eigen::Matrix3d R_GE =

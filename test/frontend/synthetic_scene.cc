@@ -55,8 +55,8 @@ cv::Mat SyntheticScene::Render(const CameraModel& model, const Pose& T_GC) const
       const std::optional<Eigen::Vector3d> point = PointAt(model, T_GC, {x, y});
       const Eigen::Vector2d texel =
           point ? Eigen::Vector2d(kTexelsPerMetre * point->head<2>()) : Eigen::Vector2d(1e6, 1e6);
-      map.at<cv::Vec2f>(y, x) = {static_cast<float>(texel.x() + kTextureSize / 2),
-                                 static_cast<float>(texel.y() + kTextureSize / 2)};
+      map.at<cv::Vec2f>(y, x) = {static_cast<float>(texel.x() + kTextureSize / 2.0),
+                                 static_cast<float>(texel.y() + kTextureSize / 2.0)};
     }
   }
   cv::Mat image;

@@ -109,14 +109,13 @@ TEST(RestInitializer, StartsAtRestWithTheErrorsItClaims) {
     EXPECT_EQ(Eigen::LLT<Matrix15d>(P).info(), Eigen::Success);
     // Tilt and lateral bias are one unknown: what gravity says of both together, theta x up g =
     // R b_a, is known far better than either.
-    const Eigen::Matrix3d R_GB = R;
     Eigen::Matrix<double, 2, 15> together = Eigen::Matrix<double, 2, 15>::Zero();
     together.leftCols<3>() = -9.81 * Hat(Eigen::Vector3d::UnitZ()).topRows<2>();
-    together.rightCols<3>() = -R_GB.topRows<2>();
+    together.rightCols<3>() = -R.topRows<2>();
     const Eigen::Matrix2d known = together * P * together.transpose();
-    EXPECT_LT(known.trace(), 0.1 * (R_GB.topRows<2>() * P.bottomRightCorner<3, 3>() *
-                                    R_GB.topRows<2>().transpose())
-                                       .trace());
+    EXPECT_LT(
+        known.trace(),
+        0.1 * (R.topRows<2>() * P.bottomRightCorner<3, 3>() * R.topRows<2>().transpose()).trace());
   }
 }
 

@@ -11,7 +11,6 @@ namespace duet {
 namespace {
 
 using testing::RandomCovariance;
-using testing::RandomVector;
 
 CalibrationPriors WithTimes() {
   CalibrationPriors priors;

@@ -13,7 +13,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::StrEq;
 using testing::ThrowsMessage;
 
 TrackTables Tables(const std::string& data) {

@@ -86,7 +86,7 @@ TEST(Random, UniformIntCoversItsRangeEvenly) {
   std::vector<int> histogram(7, 0);
   for (int i = 0; i < kCount; ++i) ++histogram.at(static_cast<std::size_t>(random.UniformInt(7)));
   // Five standard deviations of a count of 10000.
-  for (const int count : histogram) EXPECT_NEAR(count, kCount / 7, 5 * std::sqrt(kCount / 7.0));
+  for (const int count : histogram) EXPECT_NEAR(count, kCount / 7.0, 5 * std::sqrt(kCount / 7.0));
   EXPECT_EQ(random.UniformInt(1), 0);
 }
 
