@@ -50,14 +50,16 @@ class Comparator {
 
   int Run(const std::vector<Requirement>& requirements) {
     if (dataset_.empty()) {
-      dataset_ = (record_.path() / "dataset").string();
-      WriteDefaultRecording(dataset_, FLAGS_cameras == "0,1" ? 2 : 1, FLAGS_seed);
+      const DefaultRecording made =
+          FindOrMakeDefaultRecording(FLAGS_cameras == "0,1" ? 2 : 1, FLAGS_seed, FLAGS_quiet);
+      if (made.interrupted) return kInterrupted;
+      dataset_ = made.folder.string();
       if (!line_.Given("init")) FLAGS_init = "groundtruth";
-      simulated_ = true;
     }
     session_ = OpenSession(line_, dataset_, FLAGS_tracks);
     (void)session_.Start();  // refuses a start that the recording does not allow, before the work
-    comparison_.dataset = simulated_ ? "room_easy (simulated)" : NameOf(session_.recording.folder);
+    comparison_.dataset = session_.recording.label.empty() ? NameOf(session_.recording.folder)
+                                                           : session_.recording.label;
     if (const int status = Track(); status != kDone) return Finish(status);
     for (const std::string& name : EstimatorNames()) {
       if (const int status = RunEstimator(name); status != kDone) return Finish(status);
@@ -204,7 +206,6 @@ class Comparator {
     if (status != kDone && status != kBoundNotMet && status != kInterrupted) return status;
     Manifest& manifest = record_.manifest();
     manifest["dataset"] = DescribeRecording(session_.recording);
-    if (simulated_) manifest["dataset"]["path"] = "dataset/mav0, beside this file";
     manifest["tracks_sha256"] = comparison_.tracks_sha256;
     manifest["init"] = FLAGS_init;
     manifest["seed"] = FLAGS_seed;
@@ -218,7 +219,6 @@ class Comparator {
   const CommandLine& line_;
   RecordFolder record_;
   std::string dataset_;
-  bool simulated_ = false;
   Session session_;
   Comparison comparison_;
   std::vector<NamedTrajectory> estimates_;
@@ -242,7 +242,7 @@ Command CompareCommand() {
           "runs the filter and the optimizer on that stream, each alone in its own process on one "
           "core, evaluates both against the ground truth, prints the table and writes it as "
           "comparison.txt and comparison.json beside the run records. Without --dataset on a "
-          "sequence that Duet simulates. Without --out into duet-compare-<n>. That an estimator "
+          "sequence that Duet renders once and keeps ($DUET_CACHE, else ~/.cache/duet). Without --out into duet-compare-<n>. That an estimator "
           "fails is a result (exit status 0).",
       .example = "duet compare --dataset MH_01_easy --init groundtruth --out compare-mh01",
       .flags = CommonFlags(false),

@@ -1,14 +1,70 @@
 #include "experiments/default_recording.h"
 
-#include "experiments/simulation/simulator.h"
-#include "experiments/simulation/write_recording.h"
+#include <algorithm>
+#include <cstdlib>
+#include <system_error>
+#include <thread>
+
+#include "common/support/input_error.h"
+#include "experiments/build_info.h"
+#include "experiments/exit_status.h"
+#include "experiments/simulated_dataset.h"
+#include "experiments/simulation/render/render_presets.h"
 
 namespace duet {
+namespace fs = std::filesystem;
+namespace {
 
-void WriteDefaultRecording(const std::filesystem::path& folder, int cameras, std::uint64_t seed) {
-  SimulationOptions options = SimulationPreset(cameras == 2 ? "room_easy_stereo" : "room_easy");
-  if (seed != 0) options.seed = static_cast<int>(seed);
-  WriteSimulatedRecording(Simulate(options), folder);
+constexpr const char* kPreset = "easy_room";
+constexpr double kDuration_s = 20.0;
+
+// The value of an environment variable; empty where there is none.
+std::string Environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+}  // namespace
+
+fs::path CacheFolder() {
+  if (const std::string told = Environment("DUET_CACHE"); !told.empty()) return told;
+  if (const std::string xdg = Environment("XDG_CACHE_HOME"); !xdg.empty()) {
+    return fs::path(xdg) / "duet";
+  }
+  if (const std::string home = Environment("HOME"); !home.empty()) {
+    return fs::path(home) / ".cache" / "duet";
+  }
+  return fs::temp_directory_path() / "duet";
+}
+
+DefaultRecording FindOrMakeDefaultRecording(int cameras, std::uint64_t seed, bool quiet) {
+  const RenderPreset& preset = *FindRenderPreset(kPreset);
+  SimulatedDatasetOptions options;
+  options.simulation = preset.simulation;
+  options.render = preset.render;
+  options.simulation.duration_s = kDuration_s;
+  options.simulation.cameras = cameras;
+  if (seed != 0) options.simulation.seed = static_cast<int>(seed);
+  options.render.seed = options.simulation.seed;
+  options.images = true;
+  options.tracks = false;
+  options.quiet = quiet;
+  ConfigSources sources;
+  ReadSimulatedDatasetOptions(&sources, &options);
+  const std::string name = std::string(kPreset) + "-" + sources.SettingsSha256().substr(0, 12) +
+                           "-" + GetBuildInfo().commit;
+  // Any number of threads makes the same images.
+  options.render.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  DefaultRecording recording{.folder = CacheFolder() / name};
+  if (fs::exists(recording.folder)) return recording;
+  try {
+    recording.interrupted =
+        WriteSimulatedDataset(options, sources.ResolvedYaml(), recording.folder) == kInterrupted;
+  } catch (const OutputError&) {
+    // Another run may have made it meanwhile.
+    if (!fs::exists(recording.folder)) throw;
+  }
+  return recording;
 }
 
 }  // namespace duet
