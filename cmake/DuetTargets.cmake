@@ -6,6 +6,10 @@ add_custom_target(unit_tests)  # all programs with the label unit, for the sanit
 add_library(duet_warnings INTERFACE)
 target_compile_options(duet_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion
                        -Wno-sign-conversion $<$<BOOL:${DUET_WERROR}>:-Werror>)
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # What a source keeps in its unnamed namespace counts as of a header there.
+  target_compile_options(duet_warnings INTERFACE -Wno-subobject-linkage)
+endif()
 
 if(DUET_PRECOMPILED_HEADERS)
   file(WRITE "${PROJECT_BINARY_DIR}/precompiled/empty.cc" "")

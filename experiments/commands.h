@@ -13,6 +13,7 @@ namespace duet {
 [[nodiscard]] Command SimulateCommand();
 [[nodiscard]] Command CheckCommand();
 [[nodiscard]] Command MonteCarloCommand();
+[[nodiscard]] Command TrackErrorCommand();
 [[nodiscard]] Command AllanCommand();
 
 }  // namespace duet

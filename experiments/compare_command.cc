@@ -242,7 +242,8 @@ Command CompareCommand() {
           "runs the filter and the optimizer on that stream, each alone in its own process on one "
           "core, evaluates both against the ground truth, prints the table and writes it as "
           "comparison.txt and comparison.json beside the run records. Without --dataset on a "
-          "sequence that Duet renders once and keeps ($DUET_CACHE, else ~/.cache/duet). Without --out into duet-compare-<n>. That an estimator "
+          "sequence that Duet renders once and keeps ($DUET_CACHE, else ~/.cache/duet). Without "
+          "--out into duet-compare-<n>. That an estimator "
           "fails is a result (exit status 0).",
       .example = "duet compare --dataset MH_01_easy --init groundtruth --out compare-mh01",
       .flags = CommonFlags(false),

@@ -7,7 +7,6 @@
 
 #include "common/support/input_error.h"
 #include "experiments/build_info.h"
-#include "experiments/exit_status.h"
 #include "experiments/simulated_dataset.h"
 #include "experiments/simulation/render/render_presets.h"
 
@@ -59,7 +58,7 @@ DefaultRecording FindOrMakeDefaultRecording(int cameras, std::uint64_t seed, boo
   if (fs::exists(recording.folder)) return recording;
   try {
     recording.interrupted =
-        WriteSimulatedDataset(options, sources.ResolvedYaml(), recording.folder) == kInterrupted;
+        WriteSimulatedDataset(options, sources.ResolvedYaml(), recording.folder).interrupted;
   } catch (const OutputError&) {
     // Another run may have made it meanwhile.
     if (!fs::exists(recording.folder)) throw;

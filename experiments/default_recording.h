@@ -6,7 +6,8 @@
 
 namespace duet {
 
-/// Where what can be made again is kept: $DUET_CACHE, else $XDG_CACHE_HOME/duet, else ~/.cache/duet.
+/// Where what can be made again is kept: $DUET_CACHE, else $XDG_CACHE_HOME/duet, else
+/// ~/.cache/duet.
 [[nodiscard]] std::filesystem::path CacheFolder();
 
 /// The sequence that `duet compare` runs on where no data set is named: 20 s of a flight like

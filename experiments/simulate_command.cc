@@ -126,9 +126,13 @@ int RunSimulate(const CommandLine& line) {
   ConfigSources sources;
   SimulatedDatasetOptions options = ReadOptions(line, &sources);
   options.quiet = FLAGS_quiet;
-  if (FLAGS_seeds.empty()) {
-    return WriteSimulatedDataset(options, sources.ResolvedYaml(), FLAGS_out);
-  }
+  const auto write = [](const SimulatedDatasetOptions& of, const ConfigSources& settings,
+                        const std::filesystem::path& folder) {
+    const WrittenDataset written = WriteSimulatedDataset(of, settings.ResolvedYaml(), folder);
+    std::fputs(written.summary.c_str(), stdout);
+    return written.interrupted ? kInterrupted : kDone;
+  };
+  if (FLAGS_seeds.empty()) return write(options, sources, FLAGS_out);
   const SeedRange seeds = ParseSeeds(FLAGS_seeds);
   for (int seed = seeds.first; seed <= seeds.last; ++seed) {
     ConfigSources of_seed;
@@ -137,8 +141,7 @@ int RunSimulate(const CommandLine& line) {
     of_seed.AddOverride("render.seed=" + std::to_string(seed));
     ReadSimulatedDatasetOptions(&of_seed, &options);
     const auto folder = std::filesystem::path(FLAGS_out) / ("seed-" + std::to_string(seed));
-    const int status = WriteSimulatedDataset(options, of_seed.ResolvedYaml(), folder);
-    if (status != kDone) return status;
+    if (const int status = write(options, of_seed, folder); status != kDone) return status;
   }
   return kDone;
 }

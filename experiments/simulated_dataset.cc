@@ -1,11 +1,8 @@
 #include "experiments/simulated_dataset.h"
 
-#include <cstdio>
-
 #include "common/support/input_error.h"
 #include "common/support/output_folder.h"
 #include "common/support/text_file.h"
-#include "experiments/exit_status.h"
 #include "experiments/interrupt.h"
 #include "experiments/progress.h"
 #include "experiments/simulation/render/render_recording.h"
@@ -20,24 +17,24 @@ void ReadSimulatedDatasetOptions(ConfigSources* sources, SimulatedDatasetOptions
   sources->Read("render", &options->render);
 }
 
-int WriteSimulatedDataset(const SimulatedDatasetOptions& options, const std::string& settings_yaml,
-                          const std::filesystem::path& folder) {
+WrittenDataset WriteSimulatedDataset(const SimulatedDatasetOptions& options,
+                                     const std::string& settings_yaml,
+                                     const std::filesystem::path& folder) {
+  WrittenDataset written;
   OutputFolder output(folder);
   const Scenario scenario = MakeScenario(options.simulation, options.images);
   if (options.images && !scenario.world) {
     throw InputError("", 0, "world",
-                     "a box has no surfaces to render; expected --world room, "
-                     "bare_room, hall or street, or a preset with one");
-  }
-  if (scenario.recorded && !options.quiet) {
-    std::fputs(RecordedMotionText(scenario.recorded->report, scenario.start, false).c_str(),
-               stdout);
+                     "a box has no surfaces to render; expected --world room, bare_room, hall or "
+                     "street, or a preset with one of them");
   }
   const SimulatedRecording simulated = SimulateIn(scenario, options.simulation);
   WriteSimulatedRecording(simulated, output.path(), options.tracks);
   if (scenario.recorded) {
+    const RecordedMotionReport& report = scenario.recorded->report;
     WriteTextFile(output.path() / "recorded_motion.txt",
-                  RecordedMotionText(scenario.recorded->report, scenario.start, true));
+                  RecordedMotionText(report, scenario.start, true));
+    written.summary = RecordedMotionText(report, scenario.start, false);
   }
   if (options.images) {
     const auto count = static_cast<std::int64_t>(simulated.frames.size()) *
@@ -48,16 +45,35 @@ int WriteSimulatedDataset(const SimulatedDatasetOptions& options, const std::str
                       progress.Update(done);
                       return !Interrupted();
                     });
-    if (Interrupted()) return kInterrupted;
+    if (Interrupted()) {
+      written.interrupted = true;
+      return written;
+    }
     progress.Finish();
   }
   WriteTextFile(output.path() / "simulation.yaml", settings_yaml);
   output.Commit();
-  std::printf("%s: %zu frames of %zu camera%s (%s) and %zu IMU samples in %s\n",
-              simulated.label.c_str(), simulated.frames.size(), simulated.told_rig.cameras.size(),
-              simulated.told_rig.cameras.size() == 1 ? "" : "s",
-              options.images ? "images" : "tracks", simulated.imu.size(), output.target().c_str());
-  return kDone;
+  written.summary += simulated.label + ": " + std::to_string(simulated.frames.size()) +
+                     " frames of " + std::to_string(simulated.told_rig.cameras.size()) +
+                     " camera(s), " + (options.images ? "images" : "tracks") + ", and " +
+                     std::to_string(simulated.imu.size()) + " IMU samples in " +
+                     output.target().string() + "\n";
+  return written;
+}
+
+SimulatedDatasetOptions ReadSimulationOf(const std::filesystem::path& dataset) {
+  std::filesystem::path file = dataset / "simulation.yaml";
+  if (!std::filesystem::exists(file)) file = dataset / ".." / "simulation.yaml";
+  if (!std::filesystem::exists(file)) {
+    throw InputError(dataset.string(), 0, "",
+                     "has no simulation.yaml; expected a data set that duet simulate has written");
+  }
+  ConfigSources sources;
+  sources.AddFile(file);
+  SimulatedDatasetOptions options;
+  ReadSimulatedDatasetOptions(&sources, &options);
+  sources.CheckAllKeysUsed();
+  return options;
 }
 
 }  // namespace duet

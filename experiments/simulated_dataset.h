@@ -22,10 +22,19 @@ struct SimulatedDatasetOptions {
 /// and render over the options' values.
 void ReadSimulatedDatasetOptions(ConfigSources* sources, SimulatedDatasetOptions* options);
 
-/// Simulates and writes the data set, complete or absent, with `settings_yaml` as simulation.yaml,
-/// and says on stdout what it is. Returns the exit status (kDone, kInterrupted). Throws InputError
-/// and OutputError.
-int WriteSimulatedDataset(const SimulatedDatasetOptions& options, const std::string& settings_yaml,
-                          const std::filesystem::path& folder);
+struct WrittenDataset {
+  bool interrupted = false;  ///< nothing is left of it then
+  std::string summary;       ///< for a person: what it is, how the real IMU fits its truth
+};
+
+/// Simulates and writes the data set, complete or absent, with `settings_yaml` as simulation.yaml.
+/// Throws InputError and OutputError.
+[[nodiscard]] WrittenDataset WriteSimulatedDataset(const SimulatedDatasetOptions& options,
+                                                   const std::string& settings_yaml,
+                                                   const std::filesystem::path& folder);
+
+/// The settings that a simulated data set was made with, from its simulation.yaml. Throws
+/// InputError where it has none.
+[[nodiscard]] SimulatedDatasetOptions ReadSimulationOf(const std::filesystem::path& dataset);
 
 }  // namespace duet
