@@ -281,9 +281,14 @@ double Canvas::TextWidth(double height_m, std::string_view text) {
 }
 
 Texture Canvas::ToTexture() const {
+  constexpr float kShoulder = 200.0f;
+  constexpr float kRoom = 50.0f;
   std::vector<std::uint8_t> texels(grey_.size());
   for (std::size_t k = 0; k < grey_.size(); ++k) {
-    texels[k] = static_cast<std::uint8_t>(std::clamp(grey_[k], 0.0f, 255.0f) + 0.5f);
+    float grey = std::max(grey_[k], 0.0f);
+    const float over = grey - kShoulder;
+    if (over > 0.0f) grey = kShoulder + kRoom * over / (kRoom + over);
+    texels[k] = static_cast<std::uint8_t>(grey + 0.5f);
   }
   return Texture(width_, height_, texel_m_, std::move(texels));
 }

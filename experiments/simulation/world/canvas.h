@@ -84,6 +84,8 @@ class Canvas {
             double weight = 0.14);
   [[nodiscard]] static double TextWidth(double height_m, std::string_view text);
 
+  /// Rounded to whole grey levels; what is brighter than 200 is compressed to stay below 250, as a
+  /// camera's response does, so that nothing burns out.
   [[nodiscard]] Texture ToTexture() const;
 
  private:

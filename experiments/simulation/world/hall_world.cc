@@ -377,7 +377,7 @@ std::shared_ptr<const World> MakeHallWorld(const std::string& name, const WorldO
   builder.illumination().SetInside(kLow, kHigh);
   builder.illumination().SetAmbient(0.5, 0.45);
   builder.illumination().SetOcclusionReach(1.1);
-  builder.AddInside(kLow, kHigh, {.corner_density = 0.85},
+  builder.AddInside(kLow, kHigh, {.corner_density = 0.8},
                     [](Canvas& canvas, Random& random, Side side) {
                       if (side == Side::kLowZ) {
                         PaintFloor(canvas, random);

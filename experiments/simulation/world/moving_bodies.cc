@@ -124,7 +124,7 @@ void PaintCarCabin(Canvas& canvas, Random& random, Side side, double grey) {
 
 void AddCarBoxes(WorldBuilder& builder, const Pose& pose, int body) {
   const double grey = builder.random().Uniform(60.0, 215.0);
-  const WorldBuilder::Look look{.texel_m = 0.008, .corner_density = 0.7};
+  const WorldBuilder::Look look{.texel_m = 0.008, .corner_density = 0.35};
   builder.AddBox(
       pose, {-2.1, -0.88, 0.0}, {2.1, 0.88, 0.9}, look,
       [grey](Canvas& c, Random& r, Side side) { PaintCarBody(c, r, side, grey); }, body);
@@ -173,7 +173,7 @@ void AddWalker(WorldBuilder& builder, const ShuttleWay& way, double height_m) {
   const double hip = 0.47 * h;
   const double shoulder = 0.8 * h;
   const double grey = builder.random().Uniform(90.0, 170.0);
-  const WorldBuilder::Look look{.texel_m = 0.004, .corner_density = 0.8};
+  const WorldBuilder::Look look{.texel_m = 0.004, .corner_density = 1.0};
   World& world = builder.world();
   const int body = world.AddBody([way](double t_s) { return way.At(t_s); });
   const auto clothes = [grey](Canvas& c, Random& r, Side) { PaintClothes(c, r, grey); };

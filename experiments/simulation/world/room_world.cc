@@ -64,7 +64,7 @@ void PaintWhiteboard(Canvas& canvas, const Area& area, Random& random) {
   const Area board = area.Inset(0.03);
   canvas.Fill(board, 222.0);
   canvas.AddNoise(board, FractalNoise(random.Next(), 0.7, 4), 22.0);
-  for (int k = 0; k < 12; ++k) {
+  for (int k = 0; k < 27; ++k) {
     const double x = random.Uniform(board.x0 + 0.1, board.x1 - 0.5);
     const double y = random.Uniform(board.y0 + 0.1, board.y1 - 0.25);
     const double ink = random.Uniform(25.0, 110.0);
@@ -87,6 +87,12 @@ void PaintWhiteboard(Canvas& canvas, const Area& area, Random& random) {
       canvas.Line(x, y - 0.12, x, y + 0.14, 0.006, ink);
       canvas.Line(x, y, x + 0.42, y, 0.006, ink);
     }
+  }
+  for (int k = 0; k < 4; ++k) {  // sheets that magnets hold
+    const double x = board.x0 + (0.04 + 0.25 * k + random.Uniform(0.0, 0.1)) * board.width();
+    const double y = random.Uniform(board.y0 + 0.05, board.y1 - 0.42);
+    PaintPoster(canvas, {x, y, x + 0.26, y + 0.36}, random);
+    canvas.FillDisc(x + 0.13, y + 0.34, 0.016, 30.0);
   }
   canvas.Fill({area.x0 + 0.3, area.y0 - 0.03, area.x1 - 0.3, area.y0}, 170.0);
 }
@@ -118,6 +124,11 @@ void PaintWall(Canvas& canvas, Random& random, Side side) {
     PaintWhiteboard(canvas, {2.5, 0.95, 4.9, 2.25}, random);
     CoverWithPosters(canvas, {2.4, 2.4, 7.8, 2.95}, random);
     CoverWithPosters(canvas, {5.1, 0.8, 7.8, 2.3}, random);
+    for (double x = 2.5; x < 4.6; x += random.Uniform(0.45, 0.7)) {
+      const double width = random.Uniform(0.22, 0.36);
+      PaintLabel(canvas, {x, 0.35, x + width, 0.35 + random.Uniform(0.18, 0.45)}, random);
+    }
+    PaintLabel(canvas, {2.08, 1.45, 2.4, 1.85}, random);
     PaintSocket(canvas, 2.2, 1.15);
     PaintSocket(canvas, 2.3, 1.15);
   } else if (side == Side::kLowY) {
@@ -185,7 +196,7 @@ void PaintBareFloor(Canvas& canvas, Random& random) {
 
 void AddFurniture(WorldBuilder& builder, bool bare) {
   Random& random = builder.random();
-  const WorldBuilder::Look look{.corner_density = 0.9};
+  const WorldBuilder::Look look{.corner_density = bare ? 0.3 : 0.9};
   const auto box = [&](const Pose& pose, const Vector3d& size, auto paint) {
     builder.AddBox(pose, {-0.5 * size.x(), -0.5 * size.y(), 0.0},
                    {0.5 * size.x(), 0.5 * size.y(), size.z()}, look,
@@ -273,7 +284,7 @@ void AddCeilingAndLamps(WorldBuilder& builder, bool bare) {
       PaintBoards(c, c.area(), r, c.area().width() > c.area().height(), 0.2, 88.0, 8.0);
     }
   };
-  const WorldBuilder::Look look{.corner_density = bare ? 0.1 : 0.6};
+  const WorldBuilder::Look look{.corner_density = bare ? 0.03 : 0.06};
   for (const double x : {-2.9, 0.0, 2.9}) {
     builder.AddBox(Upright(x, 0.0, 2.98, 0.0), {-0.09, -4.0, 0.0}, {0.09, 4.0, 0.22}, look, beam);
   }
@@ -299,7 +310,7 @@ void AddCeilingAndLamps(WorldBuilder& builder, bool bare) {
   if (bare) return;
   // The motion capture's rail around the room, with its cameras.
   const auto rail = [](Canvas& c, Random& r, Side) { PaintBeam(c, c.area(), r, 150.0); };
-  const WorldBuilder::Look rail_look{.corner_density = 0.7};
+  const WorldBuilder::Look rail_look{.corner_density = 1.0};
   for (const double s : {-1.0, 1.0}) {
     builder.AddBox(Upright(4.32 * s, 0.0, 2.84, 0.0), {-0.03, -3.9, 0.0}, {0.03, 3.9, 0.06},
                    rail_look, rail);
@@ -331,7 +342,7 @@ std::shared_ptr<const World> MakeRoomWorld(const std::string& name, const WorldO
   builder.illumination().SetInside(kLow, kHigh);
   builder.illumination().SetAmbient(0.58, 0.5);
   builder.illumination().SetOcclusionReach(0.6);
-  builder.AddInside(kLow, kHigh, {.corner_density = bare ? 0.06 : 0.8},
+  builder.AddInside(kLow, kHigh, {.corner_density = bare ? 0.02 : 0.75},
                     [bare](Canvas& canvas, Random& random, Side side) {
                       if (side == Side::kLowZ) {
                         bare ? PaintBareFloor(canvas, random) : PaintFloor(canvas, random);

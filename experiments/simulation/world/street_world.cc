@@ -54,7 +54,7 @@ void AddSky(WorldBuilder& builder, std::uint64_t seed) {
   const Vector3d size = kSkyHigh - kSkyLow;
   const auto wall = [&](const Vector3d& corner, const Vector3d& u, const Vector3d& v) {
     builder.AddRectangle(corner, u, v, size.dot(u.cwiseAbs()), size.dot(v.cwiseAbs()),
-                         {.texel_m = 0.4, .corner_density = 0.05, .light = 1.0},
+                         {.texel_m = 0.4, .corner_density = 0.02, .light = 1.0},
                          [=](Canvas& c, Random&) {
                            c.Map(c.area(), [&](float, float x, float y) {
                              const Vector3d p = corner + x * u + y * v;
@@ -70,7 +70,7 @@ void AddSky(WorldBuilder& builder, std::uint64_t seed) {
   wall({kSkyHigh.x(), kSkyLow.y(), kSkyLow.z()}, -x, z);
   wall({kSkyLow.x(), kSkyHigh.y(), kSkyLow.z()}, x, z);
   wall({kSkyHigh.x(), kSkyLow.y(), kSkyHigh.z()}, -x, y);
-  builder.AddRectangle(kSkyLow, x, y, size.x(), size.y(), {.texel_m = 0.12, .corner_density = 0.5},
+  builder.AddRectangle(kSkyLow, x, y, size.x(), size.y(), {.texel_m = 0.12, .corner_density = 0.9},
                        [](Canvas& c, Random& r) { PaintGrass(c, c.area(), r); });
 }
 
@@ -150,7 +150,7 @@ class Builder {
                             {.texel_m = rich    ? 0.012
                                         : flank ? 0.025
                                                 : 0.08,
-                             .corner_density = rich ? 0.95 : 0.6},
+                             .corner_density = rich ? 0.85 : 0.8},
                             [rich, flank, ground = low.z() == 0.0](Canvas& c, Random& r) {
                               if (rich) {
                                 PaintFacade(c, c.area(), r, ground);
@@ -177,7 +177,7 @@ class Builder {
 
   void Tree(double x, double y) {
     const WorldBuilder::Look bark{.texel_m = 0.01, .corner_density = 0.8};
-    const WorldBuilder::Look leaves{.texel_m = 0.02, .corner_density = 0.9};
+    const WorldBuilder::Look leaves{.texel_m = 0.02, .corner_density = 1.0};
     const double trunk = random_.Uniform(2.9, 3.4);
     const double grey = random_.Uniform(105.0, 145.0);
     const double thick = random_.Uniform(0.24, 0.34);
@@ -263,8 +263,8 @@ class Builder {
             [](Canvas& c, Random& r, Side) { PaintMachineSide(c, c.area(), r, 140.0); });
         break;
       default:
-        for (int k = 0; k < 4; ++k) {
-          Box(Upright(x + 1.3 * k, sign * 7.5, kPavement_m, 0.0), {0.16, 0.16, 0.9}, look,
+        for (int k = -1; k <= 1; ++k) {
+          Box(Upright(x + 0.8 * k, sign * 7.5, kPavement_m, 0.0), {0.16, 0.16, 0.9}, look,
               [](Canvas& c, Random& r, Side) {
                 c.Fill(c.area(), 60.0);
                 c.Fill(c.area().Part(0.0, 0.7, 1.0, 0.85), 226.0);
@@ -281,7 +281,7 @@ class Builder {
 
 void AddGround(WorldBuilder& builder) {
   builder.AddRectangle({-kEnd_m, -kKerb_m, 0.0}, Vector3d::UnitX(), Vector3d::UnitY(), 2.0 * kEnd_m,
-                       2.0 * kKerb_m, {.texel_m = 0.012, .corner_density = 0.7},
+                       2.0 * kKerb_m, {.texel_m = 0.012, .corner_density = 0.9},
                        [](Canvas& c, Random& r) { PaintRoad(c, c.area(), r); });
   for (const double s : {-1.0, 1.0}) {
     const Vector3d half(kEnd_m, 0.5 * (kFront_m + 1.0 - kKerb_m), 0.0);
@@ -298,7 +298,7 @@ void AddGround(WorldBuilder& builder) {
   for (const double s : {-1.0, 1.0}) {
     builder.AddRectangle({s > 0.0 ? kEnd_m : -kEnd_m - kTunnel_m, -kKerb_m, 0.0}, Vector3d::UnitX(),
                          Vector3d::UnitY(), kTunnel_m, 2.0 * kKerb_m,
-                         {.texel_m = 0.03, .corner_density = 0.4}, [](Canvas& c, Random& r) {
+                         {.texel_m = 0.03, .corner_density = 0.15}, [](Canvas& c, Random& r) {
                            c.Fill(c.area(), 80.0);
                            PaintWear(c, c.area(), r, 0.3, 40);
                          });
@@ -318,7 +318,7 @@ void AddEnds(WorldBuilder& builder, Builder& put) {
     const double end = s > 0.0 ? x1 : x0;
     builder.AddRectangle(
         {end, s * kGate_m, 0.0}, Vector3d(0.0, -s, 0.0), Vector3d::UnitZ(), 2.0 * kGate_m, 5.6,
-        {.texel_m = 0.02, .corner_density = 0.3, .light = 0.3},
+        {.texel_m = 0.02, .corner_density = 0.1, .light = 0.3},
         [](Canvas& c, Random& r) { PaintBricks(c, c.area(), r, 0.3, 0.1, 120.0, 20.0); });
     // Farther off something tall.
     put.AddBlock({s > 0.0 ? x1 + 12.0 : x0 - 34.0, -14.0 + 9.0 * s, 0.0},
@@ -348,12 +348,27 @@ std::shared_ptr<const World> MakeStreetWorld(const std::string& name, const Worl
       x = end;
       if (random.Index(4) == 0) x += random.Uniform(2.0, 3.5);  // an alley
     }
+    // What stands on the pavement, each at its own place.
+    std::vector<double> taken;
+    const auto place = [&taken](double t) {
+      for (const double other : taken) {
+        if (std::abs(other - t) < 1.8) return false;
+      }
+      taken.push_back(t);
+      return true;
+    };
     for (double t = -80.0 + 4.0 * s; t < 82.0; t += random.Uniform(12.0, 17.0)) {
-      put.Tree(t, s * 8.1);
+      if (place(t)) put.Tree(t, s * 8.1);
     }
-    for (double t = -76.0 - 5.0 * s; t < 85.0; t += 22.0) put.Lamp(t, s);
-    for (double t = -70.0 + 7.0 * s; t < 80.0; t += random.Uniform(15.0, 26.0)) put.Sign(t, s);
-    for (double t = -83.0; t < 84.0; t += random.Uniform(5.0, 9.0)) put.Furniture(t, s);
+    for (double t = -76.0 - 5.0 * s; t < 85.0; t += 22.0) {
+      if (place(t)) put.Lamp(t, s);
+    }
+    for (double t = -70.0 + 7.0 * s; t < 80.0; t += random.Uniform(15.0, 26.0)) {
+      if (place(t)) put.Sign(t, s);
+    }
+    for (double t = -83.0; t < 84.0; t += random.Uniform(4.0, 7.0)) {
+      if (place(t)) put.Furniture(t, s);
+    }
     for (double t = -78.0 + random.Uniform(0.0, 4.0); t < 80.0; t += random.Uniform(4.9, 6.5)) {
       if (random.Index(3) == 0) continue;
       AddParkedCar(builder,

@@ -27,9 +27,11 @@ class WorldBuilder {
   using SidePainter = std::function<void(Canvas&, Random&, Side)>;
 
   struct Look {
-    double texel_m = 0.0;         ///< 0: the world's
-    double corner_density = 1.0;  ///< Surface::corner_density
-    double light = 0.0;           ///< > 0: a constant instead of the world's light (lamps, the sky)
+    double texel_m = 0.0;  ///< 0: the world's
+    /// Surface::corner_density, measured: 1 is 15 or more of FAST's corners (threshold 20) per
+    /// thousand pixels of a view of 752 x 480 from within the flight space.
+    double corner_density = 1.0;
+    double light = 0.0;  ///< > 0: a constant instead of the world's light (lamps, the sky)
     bool two_sided = false;
   };
 
