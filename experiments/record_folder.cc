@@ -50,6 +50,7 @@ Manifest DescribeRecording(const Recording& recording) {
                       {"fingerprint_sha256", recording.fingerprint},
                       {"cameras", recording.camera_numbers},
                       {"frames", stamps.size()}};
+  if (!recording.label.empty()) dataset["label"] = recording.label;
   if (!stamps.empty()) {
     dataset["first_frame_ns"] = stamps.front();
     dataset["last_frame_ns"] = stamps.back();

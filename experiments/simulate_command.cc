@@ -29,6 +29,9 @@ DEFINE_string(imu, "",
               "A recording whose IMU is taken as it is; vision is simulated along its truth.");
 DEFINE_bool(images, false, "Render images, in place of simulated tracks.");
 DEFINE_bool(point_tracks, false, "Write simulated tracks beside the images too.");
+DEFINE_double(picture, 0.0,
+              "One image only, of the first camera this long after the first frame, as the file "
+              "--out (.png, .jpg) [s].");
 DEFINE_string(seeds, "", "A..B: a data set for each seed, in folders seed-<k> of --out.");
 DEFINE_bool(list, false, "Print presets, trajectories and worlds, and end.");
 
@@ -126,6 +129,10 @@ int RunSimulate(const CommandLine& line) {
   ConfigSources sources;
   SimulatedDatasetOptions options = ReadOptions(line, &sources);
   options.quiet = FLAGS_quiet;
+  if (line.Given("picture")) {
+    WritePicture(options, FLAGS_picture, FLAGS_out);
+    return kDone;
+  }
   const auto write = [](const SimulatedDatasetOptions& of, const ConfigSources& settings,
                         const std::filesystem::path& folder) {
     const WrittenDataset written = WriteSimulatedDataset(of, settings.ResolvedYaml(), folder);
@@ -170,6 +177,7 @@ Command SimulateCommand() {
                 {.name = "imu", .value = "DIR"},
                 {.name = "images"},
                 {.name = "point_tracks"},
+                {.name = "picture", .value = "S"},
                 {.name = "config", .value = "FILE", .repeatable = true},
                 {.name = "set", .value = "KEY=VALUE", .repeatable = true},
                 {.name = "seed", .value = "N"},

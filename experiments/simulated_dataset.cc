@@ -1,15 +1,28 @@
 #include "experiments/simulated_dataset.h"
 
+#include <opencv2/imgcodecs.hpp>
+
 #include "common/support/input_error.h"
+#include "common/support/numeric_text.h"
 #include "common/support/output_folder.h"
 #include "common/support/text_file.h"
 #include "experiments/interrupt.h"
 #include "experiments/progress.h"
 #include "experiments/simulation/render/render_recording.h"
+#include "experiments/simulation/render/renderer.h"
 #include "experiments/simulation/scenario.h"
 #include "experiments/simulation/write_recording.h"
 
 namespace duet {
+namespace {
+
+[[noreturn]] void ThrowNoSurfaces() {
+  throw InputError("", 0, "world",
+                   "a box has no surfaces to render; expected --world room, bare_room, hall or "
+                   "street, or a preset with one of them");
+}
+
+}  // namespace
 
 void ReadSimulatedDatasetOptions(ConfigSources* sources, SimulatedDatasetOptions* options) {
   sources->Read("simulation", &options->simulation);
@@ -23,11 +36,7 @@ WrittenDataset WriteSimulatedDataset(const SimulatedDatasetOptions& options,
   WrittenDataset written;
   OutputFolder output(folder);
   const Scenario scenario = MakeScenario(options.simulation, options.images);
-  if (options.images && !scenario.world) {
-    throw InputError("", 0, "world",
-                     "a box has no surfaces to render; expected --world room, bare_room, hall or "
-                     "street, or a preset with one of them");
-  }
+  if (options.images && !scenario.world) ThrowNoSurfaces();
   const SimulatedRecording simulated = SimulateIn(scenario, options.simulation);
   WriteSimulatedRecording(simulated, output.path(), options.tracks);
   if (scenario.recorded) {
@@ -59,6 +68,29 @@ WrittenDataset WriteSimulatedDataset(const SimulatedDatasetOptions& options,
                      std::to_string(simulated.imu.size()) + " IMU samples in " +
                      output.target().string() + "\n";
   return written;
+}
+
+void WritePicture(const SimulatedDatasetOptions& options, double after_s,
+                  const std::filesystem::path& file) {
+  const Scenario scenario = MakeScenario(options.simulation, true);
+  if (!scenario.world) ThrowNoSurfaces();
+  const double t_s = kImuMargin_s + after_s;
+  if (!(after_s >= 0.0) || t_s + kImuMargin_s > scenario.trajectory->duration_s()) {
+    throw InputError("", 0, "--picture",
+                     "expected a time within the simulation, 0 to " +
+                         FormatNumber(scenario.trajectory->duration_s() - 2.0 * kImuMargin_s) +
+                         " s");
+  }
+  const Renderer renderer(options.render, TrueCamera(scenario.true_rig, scenario.world,
+                                                     scenario.trajectory, scenario.start));
+  const cv::Mat image = renderer.Render(0, scenario.start + ToNanoseconds(t_s)).image;
+  bool written = false;
+  try {
+    written = cv::imwrite(file.string(), image);
+  } catch (const cv::Exception&) {
+    throw InputError("", 0, "--out", "expected a file that ends in .png or .jpg");
+  }
+  if (!written) throw OutputError(file.string(), "cannot be written");
 }
 
 SimulatedDatasetOptions ReadSimulationOf(const std::filesystem::path& dataset) {

@@ -33,6 +33,11 @@ struct WrittenDataset {
                                                    const std::string& settings_yaml,
                                                    const std::filesystem::path& folder);
 
+/// One image of camera 0, `after_s` after the first frame, as `file` (.png, .jpg). Throws
+/// InputError and OutputError.
+void WritePicture(const SimulatedDatasetOptions& options, double after_s,
+                  const std::filesystem::path& file);
+
 /// The settings that a simulated data set was made with, from its simulation.yaml. Throws
 /// InputError where it has none.
 [[nodiscard]] SimulatedDatasetOptions ReadSimulationOf(const std::filesystem::path& dataset);

@@ -7,6 +7,7 @@
 
 #include "common/geometry/so3.h"
 #include "common/support/input_error.h"
+#include "experiments/simulation/scenario.h"
 
 namespace duet {
 namespace {
@@ -227,6 +228,104 @@ TEST(Simulator, OutliersComeInTheirShare) {
   // 120 draws at 0.05: 6 +- 2.4.
   EXPECT_GE(off, 1);
   EXPECT_LE(off, 16);
+}
+
+// Pixels of the same seed with and without noise: the same tracks, their noise between them.
+TEST(Simulator, PixelNoiseHasItsCovarianceInAWorld) {
+  double sum_u = 0.0;
+  double sum_v = 0.0;
+  double sum_uv = 0.0;
+  int count = 0;
+  for (int seed = 1; seed <= 5; ++seed) {
+    SimulationOptions options = ShortRun();
+    options.world = "room";
+    options.seed = seed;
+    options.pixel_noise_px = 0.7;
+    const SimulatedRecording noisy = Simulate(options);
+    options.pixel_noise_px = 0.0;
+    const SimulatedRecording clean = Simulate(options);
+    ASSERT_EQ(noisy.frames.size(), clean.frames.size());
+    for (std::size_t i = 0; i < noisy.frames.size(); ++i) {
+      const auto& a = noisy.frames[i].frames[0].observations;
+      const auto& b = clean.frames[i].frames[0].observations;
+      ASSERT_EQ(a.size(), b.size());
+      for (std::size_t j = 0; j < a.size(); ++j) {
+        ASSERT_EQ(a[j].track_id, b[j].track_id);
+        const double u = (a[j].u - b[j].u) / 0.7;
+        const double v = (a[j].v - b[j].v) / 0.7;
+        sum_u += u * u;
+        sum_v += v * v;
+        sum_uv += u * v;
+        ++count;
+      }
+    }
+  }
+  // Chi-squared of 60,000 degrees of freedom: its mean is 1 +- sqrt(2 / n) = 0.6 %; four of those.
+  ASSERT_GT(count, 50'000);
+  const double bound = 4.0 * std::sqrt(2.0 / count);
+  EXPECT_NEAR(sum_u / count, 1.0, bound);
+  EXPECT_NEAR(sum_v / count, 1.0, bound);
+  EXPECT_NEAR(sum_uv / count, 0.0, bound);
+}
+
+// A track ends where its point goes behind something: no observation is of a hidden point.
+TEST(Simulator, TracksOfAWorldAreSeen) {
+  SimulationOptions options = ShortRun();
+  options.world = "hall";
+  options.trajectory = "MH_01_easy";
+  options.noise_scale = 0.0;
+  options.moving_bodies = true;
+  options.t_r_s = 0.02;
+  const Scenario scenario = MakeScenario(options, false);
+  const SimulatedRecording recording = SimulateIn(scenario, options);
+  const CameraCalibration& camera = recording.true_rig.cameras[0];
+  std::map<std::uint64_t, Vector3d> points;
+  int moved = 0;
+  int compared = 0;
+  for (const TrackFrameSet& set : recording.frames) {
+    for (const TrackObservation& observation : set.frames[0].observations) {
+      const double t_s = SecondsBetween(recording.start, set.timestamp) +
+                         0.02 * (observation.v - 0.5 * 479.0) / 480.0;
+      const Pose T_GC =
+          (Pose{camera.R_CB, camera.p_CB} * recording.trajectory->At(t_s).T_GB.Inverse()).Inverse();
+      const Vector3d ray =
+          (T_GC.R * camera.model.Unproject({observation.u, observation.v}).value()).normalized();
+      const auto hit = scenario.world->Cast(T_GC.p, ray, t_s);
+      ASSERT_TRUE(hit);
+      const Vector3d p_G = scenario.world->PointInGlobal(hit->surface, hit->uv_m, t_s);
+      const auto [place, is_new] = points.emplace(observation.track_id, p_G);
+      if (is_new) continue;
+      ++compared;
+      // Off by more than float pixels at an edge make: something stands before it, or it moves.
+      if ((place->second - p_G).norm() > 0.02) ++moved;
+    }
+  }
+  ASSERT_GT(compared, 5000);
+  // Points on edges and on walkers.
+  EXPECT_LT(moved, compared / 50);
+}
+
+TEST(Simulator, WeakTracksEndEarly) {
+  SimulationOptions options = ShortRun();
+  options.mean_track_frames = 1e6;
+  options.trajectory = "standstill";
+  options.weak_share = 0.5;
+  options.weak_track_frames = 4.0;
+  options.max_tracks = 2000;
+  options.duration_s = 1.0;
+  const SimulatedRecording recording = Simulate(options);
+  std::map<std::uint64_t, int> length;
+  for (const TrackFrameSet& set : recording.frames) {
+    for (const TrackObservation& each : set.frames[0].observations) ++length[each.track_id];
+  }
+  int begun = 0;
+  int whole = 0;
+  for (const TrackObservation& each : recording.frames[0].frames[0].observations) {
+    ++begun;
+    if (length[each.track_id] == static_cast<int>(recording.frames.size())) ++whole;
+  }
+  // The strong half stays, and of the weak half (3/4)^20 = 0.3 %: 50.2 +- 1.1 % of 2000.
+  EXPECT_NEAR(static_cast<double>(whole) / begun, 0.502, 0.045);
 }
 
 TEST(Simulator, ToldRigIsOffByThePriors) {
