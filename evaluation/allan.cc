@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "common/support/logging.h"
 
 namespace duet {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kFlat = 2.0 * 0.69314718055994530942 / kPi;  // 2 ln 2 / pi
+constexpr double kFlat = 2.0 * 0.69314718055994530942 / std::numbers::pi;  // 2 ln 2 / pi
 constexpr double kPointsPerDecade = 12.0;
 constexpr std::size_t kFewestStretches = 9;
 constexpr std::size_t kStartsPerStretch = 64;

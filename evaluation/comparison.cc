@@ -12,9 +12,10 @@ namespace duet {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Cell = std::function<std::string(const EstimatorRun&)>;
+using CellText = std::function<std::string(const EstimatorRun&)>;
 
-void AddRow(const Comparison& comparison, std::string title, const Cell& cell, TextTable* table) {
+void AddRow(const Comparison& comparison, std::string title, const CellText& cell,
+            TextTable* table) {
   std::vector<std::string> row = {std::move(title)};
   for (const EstimatorRun& run : comparison.runs) row.push_back(cell(run));
   table->AddRow(std::move(row));

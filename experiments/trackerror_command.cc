@@ -24,7 +24,7 @@ DEFINE_double(edge_distance, 5.0, "Tracks this close to a depth edge are left ou
 namespace duet {
 namespace {
 
-nlohmann::ordered_json SummaryJson(const ErrorSummary& errors) {
+nlohmann::ordered_json PixelErrorsJson(const ErrorSummary& errors) {
   return {{"count", errors.count}, {"rms_px", errors.rmse}, {"median_px", errors.median},
           {"p95_px", errors.p95},  {"p99_px", errors.p99},  {"max_px", errors.max}};
 }
@@ -33,12 +33,12 @@ nlohmann::ordered_json ReportJson(const TrackAccuracyReport& report) {
   nlohmann::ordered_json json = {{"pairs", report.pairs},
                                  {"edge_share", report.edge_share},
                                  {"hidden_share", report.hidden_share},
-                                 {"frame_to_frame", SummaryJson(report.frame_to_frame)},
+                                 {"frame_to_frame", PixelErrorsJson(report.frame_to_frame)},
                                  {"drift", nlohmann::ordered_json::array()}};
   for (std::size_t age = 1; age < report.drift.size(); ++age) {
     if (report.drift[age].count == 0) continue;
     nlohmann::ordered_json entry = {{"age_frames", age}};
-    entry.update(SummaryJson(report.drift[age]));
+    entry.update(PixelErrorsJson(report.drift[age]));
     json["drift"].push_back(entry);
   }
   return json;

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace duet::testing {
+namespace duet::test {
 
 /// Jacobian of f: R^n -> R^m at x by central differences over six points: the error is
 /// h^6 f^(7) / 140 + 3e-16 |f| / h, about 1e-13 for functions of size and scale 1 at h = 1e-2,
@@ -42,4 +42,4 @@ inline double RelativeDifference(const Eigen::MatrixXd& a, const Eigen::MatrixXd
   return (a - b).cwiseAbs().maxCoeff() / scale;
 }
 
-}  // namespace duet::testing
+}  // namespace duet::test

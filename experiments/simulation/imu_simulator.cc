@@ -10,7 +10,7 @@ namespace duet {
 namespace {
 
 // Sequences of random numbers; 2 and 3 are the simulator's tracks and told calibration.
-enum RandomStream : std::uint64_t { kNoiseStream = 1, kJitterStream = 11, kDropStream = 12 };
+enum ImuRandomStream : std::uint64_t { kNoiseStream = 1, kJitterStream = 11, kDropStream = 12 };
 
 constexpr double kLargestJitter = 0.45;  // of an interval
 

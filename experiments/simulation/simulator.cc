@@ -151,9 +151,9 @@ SimulatedRecording SimulateIn(const Scenario& scenario, const SimulationOptions&
     AddImu(options, scenario.imu_rate_hz, &recording);
   }
 
-  TrackSimulator tracks(options, recording.true_rig, *recording.trajectory, recording.start,
-                        *scenario.scene,
-                        Random(static_cast<std::uint64_t>(options.seed), kTrackStream));
+  TrackSimulator tracks(
+      options, MovingCamera(recording.true_rig, recording.trajectory, recording.start),
+      *scenario.scene, Random(static_cast<std::uint64_t>(options.seed), kTrackStream));
   double frames_s = recording.trajectory->duration_s() - 2.0 * kImuMargin_s;
   if (options.duration_s > 0.0) frames_s = std::min(frames_s, options.duration_s);
   // Frames fall on the IMU's stamps where the rates divide, as EuRoC's do.

@@ -1,12 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "common/dataset/track_stream.h"
-#include "common/measurement/calibration.h"
 #include "common/support/random.h"
+#include "experiments/simulation/moving_camera.h"
 #include "experiments/simulation/scene.h"
-#include "experiments/simulation/trajectory.h"
 
 namespace duet {
 
@@ -15,9 +15,9 @@ struct SimulationOptions;
 /// Makes the tracks of a recording, frame after frame.
 class TrackSimulator {
  public:
-  /// Keeps references to `options`, `trajectory` and `scene`.
-  TrackSimulator(const SimulationOptions& options, const RigCalibration& rig,
-                 const Trajectory& trajectory, Timestamp start, const Scene& scene, Random random);
+  /// Keeps references to `options` and `scene`.
+  TrackSimulator(const SimulationOptions& options, MovingCamera camera, const Scene& scene,
+                 Random random);
 
   /// What the cameras see at the stamp; stamps ascend.
   [[nodiscard]] TrackFrameSet Observe(Timestamp stamp);
@@ -30,13 +30,9 @@ class TrackSimulator {
     bool weak = false;
   };
 
-  // When the row (or column) of `uv` was read, s of the trajectory.
-  [[nodiscard]] double TimeOf(int camera, Timestamp stamp, const Eigen::Vector2d& uv) const;
-  // T_CG then.
-  [[nodiscard]] Pose CameraPoseAt(int camera, double t_s) const;
-  // The pixel of a landmark, its row solved for; false where it is out of view or hidden.
-  [[nodiscard]] bool See(int camera, Timestamp stamp, const ScenePoint& point,
-                         Eigen::Vector2d* uv) const;
+  // The pixel of a landmark; nothing where it is out of view or hidden.
+  [[nodiscard]] std::optional<Eigen::Vector2d> See(int camera, Timestamp stamp,
+                                                   const ScenePoint& point) const;
   // A landmark that is seen at `uv` in the first camera.
   [[nodiscard]] std::optional<ScenePoint> DrawPoint(Timestamp stamp, const Eigen::Vector2d& uv);
   void EndTracks(Timestamp stamp);
@@ -46,13 +42,10 @@ class TrackSimulator {
   [[nodiscard]] TrackObservation Noisy(std::uint64_t id, const Eigen::Vector2d& uv);
 
   const SimulationOptions& options_;
-  RigCalibration rig_;
-  const Trajectory& trajectory_;
-  Timestamp start_;
+  MovingCamera camera_;
   const Scene& scene_;
   Random random_;
-  std::vector<double> max_radius_;  // of (x/z, y/z) in view, a camera
-  std::vector<Track> tracks_;       // ascending id
+  std::vector<Track> tracks_;  // ascending id
   std::vector<int> cell_counts_;
   std::uint64_t next_id_ = 1;
 };

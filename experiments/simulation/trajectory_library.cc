@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <numbers>
 
 #include "common/support/input_error.h"
 #include "common/support/logging.h"
@@ -13,14 +14,12 @@ namespace {
 
 using Channels = HarmonicTrajectory::Channels;
 
-constexpr double kPi = 3.14159265358979323846;
-
 Channels CircleChannels() {
   constexpr double kRate = 0.25;  // 2 m at 0.5 m/s
-  return {.x = {0.0, 0.0, {{2.0, kRate, kPi / 2}}},
+  return {.x = {0.0, 0.0, {{2.0, kRate, std::numbers::pi / 2}}},
           .y = {0.0, 0.0, {{2.0, kRate, 0.0}}},
           .z = {1.5, 0.0, {}},
-          .yaw = {kPi / 2, kRate, {}},
+          .yaw = {std::numbers::pi / 2, kRate, {}},
           .pitch = {},
           .roll = {}};
 }

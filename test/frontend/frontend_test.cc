@@ -76,7 +76,7 @@ class Sequence {
   std::map<int, std::vector<cv::Mat>> images_;
 };
 
-FrontendOptions Options() {
+FrontendOptions DefaultOptions() {
   FrontendOptions options;
   options.min_distance_px = 12.0;
   options.outlier_threshold_px = 0.7;  // the camera has half of EuRoC's pixels
@@ -124,7 +124,7 @@ std::string Bytes(const std::vector<TrackFrameSet>& stream) {
 }
 
 TEST(FrontendTest, TracksStayOnTheirPoints) {
-  Frontend frontend(Options(), 100, Mono().rig_);
+  Frontend frontend(DefaultOptions(), 100, Mono().rig_);
   const std::vector<TrackFrameSet> stream = Mono().Run(&frontend);
   const std::vector<double> errors = Errors(Mono(), stream);
   ASSERT_GT(errors.size(), 1500U);
@@ -137,7 +137,7 @@ TEST(FrontendTest, TracksStayOnTheirPoints) {
 }
 
 TEST(FrontendTest, StreamKeepsItsContract) {
-  Frontend frontend(Options(), 60, Mono().rig_);
+  Frontend frontend(DefaultOptions(), 60, Mono().rig_);
   std::set<std::uint64_t> alive;
   std::set<std::uint64_t> seen;
   for (const TrackFrameSet& set : Mono().Run(&frontend)) {
@@ -160,7 +160,7 @@ TEST(FrontendTest, StreamKeepsItsContract) {
         // Half the distance of new corners for tracks that have come together.
         EXPECT_GE(std::hypot(observations[i].u - observations[j].u,
                              observations[i].v - observations[j].v),
-                  0.5 * Options().min_distance_px - 1e-4);
+                  0.5 * DefaultOptions().min_distance_px - 1e-4);
       }
     }
     alive = now;
@@ -168,7 +168,7 @@ TEST(FrontendTest, StreamKeepsItsContract) {
 }
 
 TEST(FrontendTest, FindsTheGyroscopesBias) {
-  Frontend frontend(Options(), 100, Mono().rig_);
+  Frontend frontend(DefaultOptions(), 100, Mono().rig_);
   (void)Mono().Run(&frontend);
   // Rotation and sideways motion in front of a wall look alike: a tenth of a pixel a frame is
   // 0.01 rad/s here.
@@ -178,7 +178,7 @@ TEST(FrontendTest, FindsTheGyroscopesBias) {
 TEST(FrontendTest, SameBytesForOneAndTwoThreadsAndTwice) {
   std::vector<std::string> bytes;
   for (const int threads : {1, 2, 1}) {
-    FrontendOptions options = Options();
+    FrontendOptions options = DefaultOptions();
     options.threads = threads;
     Frontend frontend(options, 80, Stereo().rig_);
     bytes.push_back(Bytes(Stereo().Run(&frontend)));
@@ -193,7 +193,7 @@ TEST(FrontendTest, TheGyroscopeCarriesTracksThroughFastTurns) {
   const Sequence fast(false, 6.0, 3, {0.25, 1.0, 0.1});
   std::array<int, 2> kept;
   for (const bool prediction : {false, true}) {
-    FrontendOptions options = Options();
+    FrontendOptions options = DefaultOptions();
     options.gyro_prediction = prediction;
     Frontend frontend(options, 80, fast.rig_);
     (void)fast.Run(&frontend);
@@ -204,7 +204,7 @@ TEST(FrontendTest, TheGyroscopeCarriesTracksThroughFastTurns) {
 }
 
 TEST(FrontendTest, BothCamerasSeeTheSamePointUnderOneId) {
-  Frontend frontend(Options(), 80, Stereo().rig_);
+  Frontend frontend(DefaultOptions(), 80, Stereo().rig_);
   const std::vector<TrackFrameSet> stream = Stereo().Run(&frontend);
   std::vector<double> errors;
   for (std::size_t frame = 0; frame < stream.size(); ++frame) {
@@ -224,8 +224,8 @@ TEST(FrontendTest, BothCamerasSeeTheSamePointUnderOneId) {
 }
 
 TEST(FrontendTest, AnUnreadableSecondImageEndsNoTrack) {
-  Frontend whole(Options(), 80, Stereo().rig_);
-  Frontend lacking(Options(), 80, Stereo().rig_);
+  Frontend whole(DefaultOptions(), 80, Stereo().rig_);
+  Frontend lacking(DefaultOptions(), 80, Stereo().rig_);
   const std::vector<TrackFrameSet> expected = Stereo().Run(&whole);
   for (const auto& [frame, images] : Stereo().images_) {
     Stereo().Feed(&lacking, frame);
@@ -240,7 +240,7 @@ TEST(FrontendTest, AnUnreadableSecondImageEndsNoTrack) {
 }
 
 TEST(FrontendTest, RunsWithoutImuAndWithClahe) {
-  FrontendOptions options = Options();
+  FrontendOptions options = DefaultOptions();
   options.clahe = true;
   Frontend frontend(options, 60, Mono().rig_);
   for (int frame = 0; frame < 4; ++frame) {
@@ -251,7 +251,7 @@ TEST(FrontendTest, RunsWithoutImuAndWithClahe) {
 }
 
 TEST(FrontendTest, SurvivesDarknessAndDetectsAgain) {
-  Frontend frontend(Options(), 60, Mono().rig_);
+  Frontend frontend(DefaultOptions(), 60, Mono().rig_);
   (void)frontend.Process(0, Mono().images_.at(0));
   const std::vector<cv::Mat> dark = {cv::Mat(240, 376, CV_8U, cv::Scalar(3))};
   EXPECT_TRUE(frontend.Process(kFrame, dark).frames[0].observations.empty());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "experiments/simulation/world/object_texture.h"
@@ -9,8 +10,6 @@
 
 namespace duet {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 struct Style {
   int wall;  ///< bricks, plaster, stones, boards, panels

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "experiments/simulation/world/moving_bodies.h"
 #include "experiments/simulation/world/object_texture.h"
@@ -14,7 +15,6 @@ namespace {
 using Eigen::Vector3d;
 using Side = WorldBuilder::Side;
 
-constexpr double kPi = 3.14159265358979323846;
 const Vector3d kLow(-13.0, -8.0, 0.0);
 const Vector3d kHigh(13.0, 8.0, 8.0);
 
@@ -111,7 +111,7 @@ void PaintFloor(Canvas& canvas, Random& random) {
   for (int k = 0; k < 26; ++k) {  // repairs
     canvas.FillTurned(random.Uniform(1.0, 25.0), random.Uniform(1.0, 15.0),
                       random.Uniform(0.15, 0.7), random.Uniform(0.1, 0.4),
-                      random.Index(2) * 0.5 * kPi + random.Uniform(-0.05, 0.05),
+                      random.Index(2) * 0.5 * std::numbers::pi + random.Uniform(-0.05, 0.05),
                       random.Uniform(70.0, 175.0), 0.55, 0.03);
   }
   for (int k = 0; k < 16; ++k) {  // tyres
@@ -274,11 +274,11 @@ class Furnisher {
 void AddMachinery(WorldBuilder& builder) {
   Furnisher put(builder);
   for (const double x : {-10.6, -6.4, -2.0}) put.MachineGroup(Upright(x, -6.8, 0.0, 0.0));
-  for (const double x : {4.6, 8.8}) put.MachineGroup(Upright(x, 6.8, 0.0, kPi));
+  for (const double x : {4.6, 8.8}) put.MachineGroup(Upright(x, 6.8, 0.0, std::numbers::pi));
   put.Rack(1.4, -6.9, 4);
   put.Rack(-8.6, 6.95, 5);
-  put.MachineGroup(Upright(-11.6, 3.4, 0.0, -0.5 * kPi));
-  put.MachineGroup(Upright(-11.6, -2.2, 0.0, -0.5 * kPi));
+  put.MachineGroup(Upright(-11.6, 3.4, 0.0, -0.5 * std::numbers::pi));
+  put.MachineGroup(Upright(-11.6, -2.2, 0.0, -0.5 * std::numbers::pi));
   put.Machine(Upright(11.2, -3.6, 0.0, 0.0), {1.6, 2.4, 2.8});
   put.Machine(Upright(11.4, -3.6, 2.8, 0.0), {0.9, 1.4, 1.1});
   put.Pipe(Upright(11.4, -3.6, 3.9, 0.0), {0.4, 0.4, 4.1});
@@ -321,14 +321,14 @@ void AddStructure(WorldBuilder& builder) {
   }
   // Trusses: chords and the lattice between them.
   for (const double x : {-10.0, -5.0, 0.0, 5.0, 10.0}) {
-    put.Beam(Upright(x, 0.0, 5.95, 0.5 * kPi), {16.0, 0.18, 0.18}, 98.0);
-    put.Beam(Upright(x, 0.0, 7.7, 0.5 * kPi), {16.0, 0.16, 0.16}, 98.0);
+    put.Beam(Upright(x, 0.0, 5.95, 0.5 * std::numbers::pi), {16.0, 0.18, 0.18}, 98.0);
+    put.Beam(Upright(x, 0.0, 7.7, 0.5 * std::numbers::pi), {16.0, 0.16, 0.16}, 98.0);
     for (int k = 0; k < 8; ++k) {
       const double y = -7.0 + 2.0 * k;
       const double slope = (k % 2 == 0 ? 1.0 : -1.0) * std::atan2(1.57, 2.0);
       const Pose pose{
           Eigen::Quaterniond(Eigen::AngleAxisd(slope, Vector3d::UnitX()) *
-                             Eigen::AngleAxisd(0.5 * kPi, Vector3d::UnitZ())),
+                             Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitZ())),
           Vector3d(x + (k % 2 == 0 ? 0.012 : -0.012), y, 6.91)};  // they lie side by side
       builder.AddBox(pose, {-1.25, -0.05, -0.05}, {1.25, 0.05, 0.05}, {.corner_density = 0.6},
                      [](Canvas& c, Random& r, Side) { PaintBeam(c, c.area(), r, 110.0); });
@@ -338,15 +338,16 @@ void AddStructure(WorldBuilder& builder) {
   for (const double s : {-1.0, 1.0}) {
     put.Beam(Upright(0.0, 5.55 * s, 5.3, 0.0), {26.0, 0.3, 0.3}, 88.0);
   }
-  put.Box(Upright(3.0, 0.0, 5.2, 0.5 * kPi), {10.6, 0.5, 0.6}, [](Canvas& c, Random& r, Side) {
-    c.Fill(c.area(), 176.0);
-    if (c.area().width() > 3.0) {
-      PaintHazardStripes(c, c.area().Part(0.0, 0.0, 1.0, 0.3), 0.5, 28.0, 205.0);
-      c.Text(c.area().x0 + 4.0, c.area().y0 + 0.26, 0.28, "MAX 5000 KG", 30.0, 0.16);
-      PaintLabel(c, c.area().Part(0.7, 0.4, 0.76, 0.9), r);
-    }
-    PaintWear(c, c.area(), r, 0.25, 20);
-  });
+  put.Box(Upright(3.0, 0.0, 5.2, 0.5 * std::numbers::pi), {10.6, 0.5, 0.6},
+          [](Canvas& c, Random& r, Side) {
+            c.Fill(c.area(), 176.0);
+            if (c.area().width() > 3.0) {
+              PaintHazardStripes(c, c.area().Part(0.0, 0.0, 1.0, 0.3), 0.5, 28.0, 205.0);
+              c.Text(c.area().x0 + 4.0, c.area().y0 + 0.26, 0.28, "MAX 5000 KG", 30.0, 0.16);
+              PaintLabel(c, c.area().Part(0.7, 0.4, 0.76, 0.9), r);
+            }
+            PaintWear(c, c.area(), r, 0.25, 20);
+          });
   put.Machine(Upright(3.0, 1.6, 4.84, 0.0), {0.9, 0.8, 0.36});
   // Ducts along the hall.
   const auto duct = [](Canvas& c, Random& r, Side) {

@@ -1,13 +1,13 @@
 #include "experiments/simulation/world/moving_bodies.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "experiments/simulation/world/object_texture.h"
 
 namespace duet {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 using Side = WorldBuilder::Side;
 
 void PaintClothes(Canvas& canvas, Random& random, double grey) {
@@ -48,7 +48,7 @@ void PaintWheel(Canvas& canvas, double x, double y, double radius) {
   canvas.FillDisc(x, y, radius, 38.0);
   canvas.FillDisc(x, y, 0.66 * radius, 185.0);
   for (int k = 0; k < 5; ++k) {
-    const double a = 2.0 * kPi * k / 5.0 + 0.3;
+    const double a = 2.0 * std::numbers::pi * k / 5.0 + 0.3;
     canvas.FillDisc(x + 0.4 * radius * std::cos(a), y + 0.4 * radius * std::sin(a), 0.16 * radius,
                     40.0);
   }
@@ -136,30 +136,30 @@ void AddCarBoxes(WorldBuilder& builder, const Pose& pose, int body) {
 }  // namespace
 
 Pose ShuttleWay::At(double t_s) const {
-  const double angle = 2.0 * kPi * (t_s / period_s + phase);
+  const double angle = 2.0 * std::numbers::pi * (t_s / period_s + phase);
   const double s = 0.5 - 0.5 * std::cos(angle);
   const Eigen::Vector2d p = a + s * (b - a);
   // Heads along the way and turns round while it is slow.
   const double turned = 0.5 - 0.5 * std::tanh(3.0 * std::sin(angle)) / std::tanh(3.0);
   const double heading = std::atan2(b.y() - a.y(), b.x() - a.x());
-  return Upright(p.x(), p.y(), 0.0, heading + kPi * turned);
+  return Upright(p.x(), p.y(), 0.0, heading + std::numbers::pi * turned);
 }
 
 double ShuttleWay::Speed(double t_s) const {
-  const double angle = 2.0 * kPi * (t_s / period_s + phase);
-  return kPi / period_s * (b - a).norm() * std::abs(std::sin(angle));
+  const double angle = 2.0 * std::numbers::pi * (t_s / period_s + phase);
+  return std::numbers::pi / period_s * (b - a).norm() * std::abs(std::sin(angle));
 }
 
 Pose LoopWay::At(double t_s) const {
   const double straight = 2.0 * half_length_m;
-  const double arc = kPi * half_width_m;
+  const double arc = std::numbers::pi * half_width_m;
   const double length = 2.0 * (straight + arc);
   double s = start_m + speed_m_s * t_s;
   s -= length * std::floor(s / length);
   const bool second = s >= straight + arc;
   if (second) s -= straight + arc;
   const double sign = second ? -1.0 : 1.0;
-  const double yaw = second ? kPi : 0.0;
+  const double yaw = second ? std::numbers::pi : 0.0;
   if (s <= straight) {
     return Upright(sign * (s - half_length_m), -sign * half_width_m, 0.0, yaw);
   }
@@ -192,8 +192,8 @@ void AddWalker(WorldBuilder& builder, const ShuttleWay& way, double height_m) {
     return world.AddBody([way, y, joint, sign, reach](double t_s) {
       const Pose T_G_walker = way.At(t_s);
       const double gone = (T_G_walker.p.head<2>() - way.a).norm();
-      const double swing =
-          sign * reach * std::min(1.0, way.Speed(t_s)) * std::sin(2.0 * kPi * gone / 1.3);
+      const double swing = sign * reach * std::min(1.0, way.Speed(t_s)) *
+                           std::sin(2.0 * std::numbers::pi * gone / 1.3);
       const Pose T_walker_limb{
           Eigen::Quaterniond(Eigen::AngleAxisd(swing, Eigen::Vector3d::UnitY())),
           Eigen::Vector3d(0.0, y, joint)};

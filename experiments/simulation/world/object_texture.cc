@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace duet {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Lines of words too small to read, from the top.
 void PaintPrint(Canvas& canvas, const Area& area, Random& random, double line_m, double ink) {
@@ -120,11 +119,11 @@ void PaintShapes(Canvas& canvas, const Area& area, Random& random) {
         canvas.FillDisc(x, y, size, tone);
         break;
       case 1:
-        canvas.FillTurned(x, y, size, random.Uniform(0.3, 1.0) * size, random.Uniform(0.0, kPi),
-                          tone);
+        canvas.FillTurned(x, y, size, random.Uniform(0.3, 1.0) * size,
+                          random.Uniform(0.0, std::numbers::pi), tone);
         break;
       case 2: {
-        const double a = random.Uniform(0.0, kPi);
+        const double a = random.Uniform(0.0, std::numbers::pi);
         canvas.FillConvex({{x + size * std::cos(a), y + size * std::sin(a)},
                            {x + size * std::cos(a + 2.1), y + size * std::sin(a + 2.1)},
                            {x + size * std::cos(a + 4.2), y + size * std::sin(a + 4.2)}},
@@ -153,7 +152,7 @@ void PaintMap(Canvas& canvas, const Area& area, Random& random) {
   for (int k = 0; k < 5; ++k) {
     double x = random.Uniform(area.x0, area.x1);
     double y = random.Uniform(area.y0, area.y1);
-    double angle = random.Uniform(0.0, 2.0 * kPi);
+    double angle = random.Uniform(0.0, 2.0 * std::numbers::pi);
     for (int s = 0; s < 14; ++s) {
       angle += random.Uniform(-0.5, 0.5);
       const double nx = std::clamp(x + 0.07 * std::cos(angle), area.x0, area.x1);
@@ -190,12 +189,12 @@ void PaintGauge(Canvas& canvas, double x, double y, double radius, Random& rando
   canvas.FillDisc(x, y, radius, 40.0);
   canvas.FillDisc(x, y, 0.85 * radius, 226.0);
   for (int k = 0; k < 9; ++k) {
-    const double a = -0.6 + k * (kPi + 1.2) / 8.0;
+    const double a = -0.6 + k * (std::numbers::pi + 1.2) / 8.0;
     canvas.Line(x + 0.6 * radius * std::cos(a), y + 0.6 * radius * std::sin(a),
                 x + 0.76 * radius * std::cos(a), y + 0.76 * radius * std::sin(a), 0.07 * radius,
                 30.0);
   }
-  const double a = random.Uniform(-0.6, kPi + 0.6);
+  const double a = random.Uniform(-0.6, std::numbers::pi + 0.6);
   canvas.Line(x, y, x + 0.7 * radius * std::cos(a), y + 0.7 * radius * std::sin(a), 0.1 * radius,
               20.0);
 }
@@ -388,7 +387,7 @@ void PaintCurtain(Canvas& canvas, const Area& area, Random& random) {
   if (kind == 0) {
     for (double y = area.y0 + figure; y < area.y1; y += 2.0 * figure) {
       for (double x = area.x0; x < area.x1; x += 0.25 * pitch) {
-        const double sag = 0.25 * figure * std::sin(2.0 * kPi * x / pitch);
+        const double sag = 0.25 * figure * std::sin(2.0 * std::numbers::pi * x / pitch);
         canvas.FillTurned(x + 0.125 * pitch, y + sag, 0.14 * pitch, 0.38 * figure, 0.0, ink);
       }
     }
@@ -401,7 +400,7 @@ void PaintCurtain(Canvas& canvas, const Area& area, Random& random) {
           canvas.FillDisc(x, y, random.Uniform(0.2, 0.42) * figure, ink);
           canvas.FillDisc(x, y, 0.12 * figure, grey);
         } else {
-          const double a = random.Uniform(0.0, kPi);
+          const double a = random.Uniform(0.0, std::numbers::pi);
           canvas.FillTurned(x, y, 0.45 * figure, 0.16 * figure, a, ink, 1.0, 0.16 * figure);
           canvas.FillTurned(x, y, 0.45 * figure, 0.16 * figure, a + 1.2, ink, 1.0, 0.16 * figure);
         }
@@ -415,8 +414,8 @@ void PaintCurtain(Canvas& canvas, const Area& area, Random& random) {
   const std::vector<float>& bend = wander.Row(0.5);
   for (int j = 0; j < canvas.width(); ++j) {
     const double x = j * canvas.texel_m() / pitch + 1.4 * bend[j] + phase;
-    fold[j] =
-        static_cast<float>(0.78 + 0.3 * std::sin(2.0 * kPi * x) + 0.1 * std::sin(5.3 * kPi * x));
+    fold[j] = static_cast<float>(0.78 + 0.3 * std::sin(2.0 * std::numbers::pi * x) +
+                                 0.1 * std::sin(5.3 * std::numbers::pi * x));
   }
   canvas.Map(area, [&](float g, float x, float) {
     const int j = std::clamp(static_cast<int>((x - canvas.area().x0) / canvas.texel_m()), 0,
@@ -655,8 +654,8 @@ void PaintFoliage(Canvas& canvas, const Area& area, Random& random, double grey)
   for (int k = 0; k < leaves; ++k) {
     canvas.FillTurned(random.Uniform(area.x0, area.x1), random.Uniform(area.y0, area.y1),
                       random.Uniform(0.03, 0.08), random.Uniform(0.015, 0.04),
-                      random.Uniform(0.0, kPi), std::min(235.0, grey * random.Uniform(0.35, 1.9)),
-                      0.9, 0.015);
+                      random.Uniform(0.0, std::numbers::pi),
+                      std::min(235.0, grey * random.Uniform(0.35, 1.9)), 0.9, 0.015);
   }
 }
 

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace duet {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Calls f(cell, i, j) for the cells of a grid that starts at the area's low corner.
 template <typename F>
@@ -57,13 +56,13 @@ void PaintWear(Canvas& canvas, const Area& area, Random& random, double strength
   for (int k = 0; k < count; ++k) {
     const double size = 0.04 * std::exp(random.Uniform(0.0, 1.8));
     canvas.Shadow(random.Uniform(area.x0, area.x1), random.Uniform(area.y0, area.y1), 0.3 * size,
-                  0.2 * size * random.Uniform(0.5, 1.5), random.Uniform(0.0, kPi), size,
-                  random.Uniform(-0.5, 1.0) * strength);
+                  0.2 * size * random.Uniform(0.5, 1.5), random.Uniform(0.0, std::numbers::pi),
+                  size, random.Uniform(-0.5, 1.0) * strength);
   }
   for (int k = 0; k < count; ++k) {
     const double x = random.Uniform(area.x0, area.x1);
     const double y = random.Uniform(area.y0, area.y1);
-    const double angle = random.Uniform(0.0, kPi);
+    const double angle = random.Uniform(0.0, std::numbers::pi);
     const double length = random.Uniform(0.04, 0.35);
     canvas.Line(x, y, x + length * std::cos(angle), y + length * std::sin(angle),
                 random.Uniform(0.002, 0.006), random.Index(2) == 0 ? 40.0 : 220.0, strength);
@@ -74,7 +73,7 @@ void PaintCracks(Canvas& canvas, const Area& area, Random& random, int count, do
   for (int k = 0; k < count; ++k) {
     double x = random.Uniform(area.x0, area.x1);
     double y = random.Uniform(area.y0, area.y1);
-    double angle = random.Uniform(0.0, 2.0 * kPi);
+    double angle = random.Uniform(0.0, 2.0 * std::numbers::pi);
     const int steps = 6 + random.Index(20);
     for (int s = 0; s < steps; ++s) {
       angle += random.Uniform(-0.7, 0.7);
@@ -189,8 +188,8 @@ void PaintTiles(Canvas& canvas, const Area& area, Random& random, double size_m,
     const double y = cell.center_y();
     const int kind = random.Index(3);
     if (kind == 0) {
-      canvas.FillTurned(x, y, 0.26 * size_m, 0.26 * size_m, kPi / 4, ink);
-      canvas.FillTurned(x, y, 0.12 * size_m, 0.12 * size_m, kPi / 4, tone);
+      canvas.FillTurned(x, y, 0.26 * size_m, 0.26 * size_m, std::numbers::pi / 4, ink);
+      canvas.FillTurned(x, y, 0.12 * size_m, 0.12 * size_m, std::numbers::pi / 4, tone);
     } else if (kind == 1) {
       canvas.FillRing(x, y, 0.36 * size_m, 0.08 * size_m, ink);
       canvas.FillDisc(x, y, 0.12 * size_m, ink);
@@ -239,14 +238,14 @@ void PaintRug(Canvas& canvas, const Area& area, Random& random) {
   const Area border = area.Inset(0.22);
   for (double s = 0.12; s < border.width() - 0.05; s += 0.17) {
     for (const double y : {border.y0, border.y1}) {
-      canvas.FillTurned(border.x0 + s, y, 0.042, 0.042, kPi / 4, bright);
-      canvas.FillTurned(border.x0 + s, y, 0.018, 0.018, kPi / 4, dark);
+      canvas.FillTurned(border.x0 + s, y, 0.042, 0.042, std::numbers::pi / 4, bright);
+      canvas.FillTurned(border.x0 + s, y, 0.018, 0.018, std::numbers::pi / 4, dark);
     }
   }
   for (double s = 0.12; s < border.height() - 0.05; s += 0.17) {
     for (const double x : {border.x0, border.x1}) {
-      canvas.FillTurned(x, border.y0 + s, 0.042, 0.042, kPi / 4, bright);
-      canvas.FillTurned(x, border.y0 + s, 0.018, 0.018, kPi / 4, dark);
+      canvas.FillTurned(x, border.y0 + s, 0.042, 0.042, std::numbers::pi / 4, bright);
+      canvas.FillTurned(x, border.y0 + s, 0.018, 0.018, std::numbers::pi / 4, dark);
     }
   }
   // Medallions of irregular make over the middle.
@@ -260,18 +259,19 @@ void PaintRug(Canvas& canvas, const Area& area, Random& random) {
       const double size = random.Uniform(0.09, 0.17);
       const double tone = random.Index(2) == 0 ? bright : middle;
       if (random.Index(2) == 0) {
-        canvas.FillTurned(x, y, size, size, kPi / 4 + random.Uniform(-0.1, 0.1), tone);
-        canvas.FillTurned(x, y, 0.6 * size, 0.6 * size, kPi / 4, dark);
+        canvas.FillTurned(x, y, size, size, std::numbers::pi / 4 + random.Uniform(-0.1, 0.1), tone);
+        canvas.FillTurned(x, y, 0.6 * size, 0.6 * size, std::numbers::pi / 4, dark);
       } else {
         canvas.FillDisc(x, y, size, tone);
         canvas.FillDisc(x, y, 0.65 * size, dark);
       }
       for (int k = 0; k < 6; ++k) {
-        const double angle = k * kPi / 3 + random.Uniform(0.0, 0.6);
+        const double angle = k * std::numbers::pi / 3 + random.Uniform(0.0, 0.6);
         canvas.FillDisc(x + 0.4 * size * std::cos(angle), y + 0.4 * size * std::sin(angle),
                         0.15 * size, bright);
       }
-      canvas.FillTurned(x + 0.21, y + 0.2, 0.03, 0.03, random.Uniform(0.0, kPi), middle);
+      canvas.FillTurned(x + 0.21, y + 0.2, 0.03, 0.03, random.Uniform(0.0, std::numbers::pi),
+                        middle);
     }
   }
   canvas.ScaleNoise(area, FractalNoise(random.Next(), 0.03, 2, 0.8), 0.22);
@@ -283,7 +283,7 @@ void PaintCeilingBoards(Canvas& canvas, const Area& area, Random& random, double
     canvas.Fill(cell, NearGrey(random, 176.0, 14.0));
     if (random.Index(9) == 0) {  // a water stain
       canvas.Shadow(random.Uniform(cell.x0, cell.x1), random.Uniform(cell.y0, cell.y1), 0.06, 0.04,
-                    random.Uniform(0.0, kPi), 0.18, 0.35);
+                    random.Uniform(0.0, std::numbers::pi), 0.18, 0.35);
     }
   });
   // Fissures and pinholes, as mineral boards have.

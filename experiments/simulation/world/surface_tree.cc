@@ -15,7 +15,7 @@ constexpr double kBoxMargin_m = 1e-6;
 constexpr double kSlack_m = 1e-9;
 constexpr int kMaxDepth = 256;
 
-double Area(const Eigen::AlignedBox3d& box) {
+double SurfaceArea(const Eigen::AlignedBox3d& box) {
   const Eigen::Vector3d s = box.sizes();
   return s.x() * s.y() + s.y() * s.z() + s.z() * s.x();
 }
@@ -41,16 +41,16 @@ double Enter(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin,
 int SurfaceTree::FindSibling(const Eigen::AlignedBox3d& box) const {
   int node = root_;
   while (nodes_[node].rectangle < 0) {
-    const double area = Area(nodes_[node].box);
-    const double merged = Area(nodes_[node].box.merged(box));
+    const double area = SurfaceArea(nodes_[node].box);
+    const double merged = SurfaceArea(nodes_[node].box.merged(box));
     // A new parent here against going on into a child, whose ancestors all grow by the difference.
     const double here = 2.0 * merged;
     const double inherited = 2.0 * (merged - area);
     double best = here;
     int next = -1;
     for (const int child : nodes_[node].children) {
-      double cost = inherited + Area(nodes_[child].box.merged(box));
-      if (nodes_[child].rectangle < 0) cost -= Area(nodes_[child].box);
+      double cost = inherited + SurfaceArea(nodes_[child].box.merged(box));
+      if (nodes_[child].rectangle < 0) cost -= SurfaceArea(nodes_[child].box);
       if (cost < best) {
         best = cost;
         next = child;

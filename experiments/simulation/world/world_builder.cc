@@ -12,14 +12,14 @@
 namespace duet {
 namespace {
 
-struct Face {
+struct BoxFace {
   WorldBuilder::Side side;
   Eigen::Vector3d outward, up;
 };
 
-const std::array<Face, 6>& Faces() {
+const std::array<BoxFace, 6>& BoxFaces() {
   using Side = WorldBuilder::Side;
-  static const std::array<Face, 6> faces = {
+  static const std::array<BoxFace, 6> faces = {
       {{Side::kLowX, -Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitZ()},
        {Side::kHighX, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitZ()},
        {Side::kLowY, -Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()},
@@ -84,7 +84,7 @@ void WorldBuilder::AddRectangle(const Eigen::Vector3d& corner, const Eigen::Vect
 
 void WorldBuilder::AddInside(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
                              const Look& look, const SidePainter& paint) {
-  for (const Face& face : Faces()) {
+  for (const BoxFace& face : BoxFaces()) {
     const Surface s = FaceOf(low, high, face.outward, -face.outward, face.up);
     AddRectangle(s.corner, s.u_axis, s.v_axis, s.width_m, s.height_m, look,
                  [paint, side = face.side](Canvas& c, Random& r) { paint(c, r, side); });
@@ -93,7 +93,7 @@ void WorldBuilder::AddInside(const Eigen::Vector3d& low, const Eigen::Vector3d& 
 
 void WorldBuilder::AddBox(const Pose& pose, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
                           const Look& look, const SidePainter& paint, int body) {
-  for (const Face& face : Faces()) {
+  for (const BoxFace& face : BoxFaces()) {
     const Surface s = FaceOf(low, high, face.outward, face.outward, face.up);
     if (body == 0 && face.side == Side::kLowZ && (pose * s.corner).z() < 1e-6) continue;
     Look side_look = look;

@@ -10,7 +10,7 @@
 namespace duet {
 namespace {
 
-using testing::RandomCovariance;
+using test::RandomCovariance;
 
 CalibrationPriors WithTimes() {
   CalibrationPriors priors;
@@ -20,7 +20,7 @@ CalibrationPriors WithTimes() {
 }
 
 TEST(FilterState, StartsWithThePriorsOfTheCalibration) {
-  FilterState state(testing::StereoRig(), WithTimes(), 5);
+  FilterState state(test::StereoRig(), WithTimes(), 5);
   InitialCondition initial;
   initial.covariance = 2.0 * Matrix15d::Identity();
   state.Start(initial);
@@ -32,9 +32,9 @@ TEST(FilterState, StartsWithThePriorsOfTheCalibration) {
 }
 
 TEST(FilterState, ClonesHoldVelocityOnlyWhereTimesMatter) {
-  EXPECT_EQ(FilterState(testing::StereoRig(), CalibrationPriors(), 5).clone_size(), 6);
-  EXPECT_EQ(FilterState(testing::StereoRig(), WithTimes(), 5).clone_size(), 9);
-  RigCalibration rolling = testing::StereoRig();
+  EXPECT_EQ(FilterState(test::StereoRig(), CalibrationPriors(), 5).clone_size(), 6);
+  EXPECT_EQ(FilterState(test::StereoRig(), WithTimes(), 5).clone_size(), 9);
+  RigCalibration rolling = test::StereoRig();
   rolling.t_r_s = 0.02;
   EXPECT_EQ(FilterState(rolling, CalibrationPriors(), 5).clone_size(), 9);
 }
@@ -42,7 +42,7 @@ TEST(FilterState, ClonesHoldVelocityOnlyWhereTimesMatter) {
 // 6.18: P <- [I; J] P [I; J]'.
 TEST(FilterState, AugmentationCopiesTheNewestStatesError) {
   Random random(1);
-  FilterState state = testing::RandomState(&random, testing::StereoRig(), WithTimes(), 4);
+  FilterState state = test::RandomState(&random, test::StereoRig(), WithTimes(), 4);
   const int n = state.size();
   state.RemoveClone(0);
   const Eigen::MatrixXd P = state.P();
@@ -59,7 +59,7 @@ TEST(FilterState, AugmentationCopiesTheNewestStatesError) {
 TEST(FilterState, RemovalKeepsEverythingElse) {
   Random random(2);
   for (int removed = 0; removed < 4; ++removed) {
-    FilterState state = testing::RandomState(&random, testing::StereoRig(), WithTimes(), 4);
+    FilterState state = test::RandomState(&random, test::StereoRig(), WithTimes(), 4);
     const Eigen::MatrixXd P = state.P();
     std::vector<int> kept;
     for (int i = 0; i < state.size(); ++i) {
@@ -75,7 +75,7 @@ TEST(FilterState, RemovalKeepsEverythingElse) {
 
 TEST(FilterState, CorrectionIsBoxPlusOfEveryPart) {
   Random random(3);
-  FilterState state = testing::RandomState(&random, testing::StereoRig(), WithTimes(), 3);
+  FilterState state = test::RandomState(&random, test::StereoRig(), WithTimes(), 3);
   Eigen::VectorXd dx(state.size());
   for (Eigen::Index i = 0; i < dx.size(); ++i) dx[i] = 1e-3 * random.Normal();
   const FilterState before = state;
@@ -95,7 +95,7 @@ TEST(FilterState, CorrectionIsBoxPlusOfEveryPart) {
 
 TEST(FilterState, TimeOffsetStaysWithinItsBound) {
   Random random(4);
-  FilterState state = testing::RandomState(&random, testing::StereoRig(), WithTimes(), 3);
+  FilterState state = test::RandomState(&random, test::StereoRig(), WithTimes(), 3);
   Eigen::VectorXd dx = Eigen::VectorXd::Zero(state.size());
   dx[15 + 6] = 0.5;
   state.Correct(dx, 0.02, 0.0);
@@ -123,7 +123,7 @@ Eigen::MatrixXd Unobservable(const FilterState& state) {
 // P = X + N A N', Rebase gives M X M' + N' A N'' with N' those at the current values.
 TEST(FilterState, RebaseCarriesUnobservableDirectionsAlong) {
   Random random(5);
-  FilterState state = testing::RandomState(&random, testing::StereoRig(), WithTimes(), 4);
+  FilterState state = test::RandomState(&random, test::StereoRig(), WithTimes(), 4);
   const Eigen::MatrixXd X = state.P();
   FilterState plain = state;
   plain.Rebase();

@@ -17,7 +17,7 @@
 namespace duet {
 namespace {
 
-using testing::RandomCovariance;
+using test::RandomCovariance;
 
 Eigen::MatrixXd RandomMatrix(Random* random, Eigen::Index rows, Eigen::Index cols) {
   Eigen::MatrixXd M(rows, cols);

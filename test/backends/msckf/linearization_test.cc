@@ -10,7 +10,7 @@
 namespace duet {
 namespace {
 
-using testing::kGravity;
+using test::kGravity;
 
 CalibrationPriors Everything() {
   CalibrationPriors priors;
@@ -60,8 +60,7 @@ struct Scene {
 // Both cameras see the landmark in clones 1 .. 4, clone 3 with the first only; pixels are off from
 // what is predicted by about a pixel.
 Scene MakeScene(Random* random, const RigCalibration& rig, const CalibrationPriors& priors) {
-  Scene scene{
-      testing::RandomState(random, rig, priors, 5), testing::RandomLandmark(random), 1, {}, {}};
+  Scene scene{test::RandomState(random, rig, priors, 5), test::RandomLandmark(random), 1, {}, {}};
   scene.settings.pixel_noise_px = 0.7;
   for (int clone = 1; clone < 5; ++clone) {
     for (int camera = 0; camera < 2; ++camera) {
@@ -80,7 +79,7 @@ Scene MakeScene(Random* random, const RigCalibration& rig, const CalibrationPrio
 }
 
 RigCalibration Rolling() {
-  RigCalibration rig = testing::StereoRig();
+  RigCalibration rig = test::StereoRig();
   rig.t_d_s = 0.003;
   rig.t_r_s = 0.02;
   return rig;
@@ -89,12 +88,12 @@ RigCalibration Rolling() {
 TEST(Linearization, EqualsNumericDifferentiationOverStateAndCalibration) {
   Random random(1);
   for (const auto& [rig, priors] :
-       {std::pair(testing::StereoRig(), CalibrationPriors()),
-        std::pair(testing::StereoRig(), PositionAndTime()), std::pair(Rolling(), Everything())}) {
+       {std::pair(test::StereoRig(), CalibrationPriors()),
+        std::pair(test::StereoRig(), PositionAndTime()), std::pair(Rolling(), Everything())}) {
     const Scene scene = MakeScene(&random, rig, priors);
     const Scene::Result result = scene.Linearize();
     ASSERT_TRUE(result.ok);
-    const Eigen::MatrixXd numeric = -testing::NumericJacobian(
+    const Eigen::MatrixXd numeric = -test::NumericJacobian(
         [&](const Eigen::VectorXd& error) {
           Scene moved = scene;
           moved.state.Correct(1e-2 * error, 1.0, 1.0);
@@ -104,16 +103,16 @@ TEST(Linearization, EqualsNumericDifferentiationOverStateAndCalibration) {
     // T matrices act on pixels within tau only: left out by definition, frozen in the test too.
     // 1e-7: the integration error of the motion within tau, of which only the end is
     // differentiated.
-    EXPECT_LT(testing::RelativeDifference(1e-2 * result.H_r.leftCols(scene.state.size()), numeric),
+    EXPECT_LT(test::RelativeDifference(1e-2 * result.H_r.leftCols(scene.state.size()), numeric),
               1e-7);
-    const Eigen::MatrixXd numeric_f = -testing::NumericJacobian(
+    const Eigen::MatrixXd numeric_f = -test::NumericJacobian(
         [&](const Eigen::VectorXd& error) {
           Scene moved = scene;
           moved.landmark += 1e-2 * error;
           return moved.Residual();
         },
         Eigen::VectorXd::Zero(3));
-    EXPECT_LT(testing::RelativeDifference(1e-2 * result.H_f, numeric_f), 1e-8);
+    EXPECT_LT(test::RelativeDifference(1e-2 * result.H_f, numeric_f), 1e-8);
   }
 }
 
@@ -135,7 +134,7 @@ Eigen::MatrixXd Unobservable(const FilterState& state, bool first) {
 TEST(Linearization, IsBlindToUnobservableDirectionsAtTheFirstEstimates) {
   Random random(2);
   for (const auto& [rig, priors] :
-       {std::pair(testing::StereoRig(), CalibrationPriors()), std::pair(Rolling(), Everything())}) {
+       {std::pair(test::StereoRig(), CalibrationPriors()), std::pair(Rolling(), Everything())}) {
     Scene scene = MakeScene(&random, rig, priors);
     const auto along = [&](bool first) -> double {
       const Scene::Result result = scene.Linearize();
@@ -154,7 +153,7 @@ TEST(Linearization, IsBlindToUnobservableDirectionsAtTheFirstEstimates) {
 
 TEST(Linearization, ResidualIsTakenAtTheCurrentEstimates) {
   Random random(3);
-  Scene scene = MakeScene(&random, testing::StereoRig(), CalibrationPriors());
+  Scene scene = MakeScene(&random, test::StereoRig(), CalibrationPriors());
   const Eigen::VectorXd r = scene.Residual();
   scene.settings.separate_first_estimates = true;
   EXPECT_EQ(scene.Residual(), r);
@@ -162,7 +161,7 @@ TEST(Linearization, ResidualIsTakenAtTheCurrentEstimates) {
 
 TEST(Linearization, RefusesAPointBehindACamera) {
   Random random(4);
-  Scene scene = MakeScene(&random, testing::StereoRig(), CalibrationPriors());
+  Scene scene = MakeScene(&random, test::StereoRig(), CalibrationPriors());
   scene.state.clones()[2].nav.R_GB =
       ExpQuaternion(Eigen::Vector3d(0, M_PI, 0)) * scene.state.clones()[2].nav.R_GB;
   EXPECT_FALSE(scene.Linearize().ok);

@@ -15,8 +15,8 @@
 namespace duet {
 namespace {
 
-using testing::kGravity;
-using testing::RandomVector;
+using test::kGravity;
+using test::RandomVector;
 
 constexpr int kClones = 16;
 constexpr int kLandmarks = 25;
@@ -29,8 +29,8 @@ struct History {
 };
 
 History MakeHistory(Random* random) {
-  const ImuBuffer imu = testing::MovingImu();
-  History history{FilterState(testing::StereoRig(), CalibrationPriors(), kClones), {}, {}};
+  const ImuBuffer imu = test::MovingImu();
+  History history{FilterState(test::StereoRig(), CalibrationPriors(), kClones), {}, {}};
   FilterState& state = history.state;
   InitialCondition initial;
   initial.state.instant = ToNanoseconds(0.3);
@@ -83,7 +83,7 @@ Eigen::MatrixXd Observability(const History& history, bool first_estimates, Rand
     LandmarkRows H_f(12, 3);
     MeasurementRows rows(12, columns.width() + 1);
     EXPECT_TRUE(LinearizeLandmark(state, columns, settings, first_clone,
-                                  testing::RandomLandmark(random), observations, H_f, rows));
+                                  test::RandomLandmark(random), observations, H_f, rows));
     ProjectNullspace(H_f, rows);
     Eigen::MatrixXd block = Eigen::MatrixXd::Zero(9, 15);
     for (int clone = 0; clone < kClones; ++clone) {

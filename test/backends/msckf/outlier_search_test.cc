@@ -28,7 +28,7 @@ struct Problem {
     Random random(seed);
     H_f = 5.0 * Normal<LandmarkRows>(&random, 2 * kObservations, 3);
     rows = Normal<MeasurementRows>(&random, 2 * kObservations, kWidth + 1);  // r: its noise
-    P = testing::RandomCovariance(&random, kWidth);
+    P = test::RandomCovariance(&random, kWidth);
     const Eigen::VectorXd x = Normal<Eigen::MatrixXd>(&random, kWidth, 1);
     const Eigen::MatrixXd L = P.llt().matrixL();
     rows.rightCols<1>() += rows.leftCols<kWidth>() * (L * x) + H_f * Eigen::Vector3d(1, 2, 3);

@@ -2,7 +2,7 @@
 
 #include "common/geometry/so3.h"
 
-namespace duet::testing {
+namespace duet::test {
 
 Eigen::Vector3d RandomVector(Random* random, double sigma) {
   const double x = sigma * random->Normal();
@@ -78,4 +78,4 @@ InverseDepth RandomLandmark(Random* random) {
   return {random->Uniform(-0.3, 0.3), random->Uniform(-0.2, 0.2), random->Uniform(0.2, 0.35)};
 }
 
-}  // namespace duet::testing
+}  // namespace duet::test

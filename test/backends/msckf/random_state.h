@@ -5,7 +5,7 @@
 #include "common/measurement/measurement_model.h"
 #include "common/support/random.h"
 
-namespace duet::testing {
+namespace duet::test {
 
 inline const Eigen::Vector3d kGravity(0, 0, -9.81);
 
@@ -27,4 +27,4 @@ inline const Eigen::Vector3d kGravity(0, 0, -9.81);
 /// A landmark ahead of the body, in the frame of the anchor clone.
 [[nodiscard]] InverseDepth RandomLandmark(Random* random);
 
-}  // namespace duet::testing
+}  // namespace duet::test

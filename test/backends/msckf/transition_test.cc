@@ -13,9 +13,9 @@
 namespace duet {
 namespace {
 
-using testing::kGravity;
-using testing::RandomCovariance;
-using testing::RandomVector;
+using test::kGravity;
+using test::RandomCovariance;
+using test::RandomVector;
 
 const ImuNoise kNoise = {.gyroscope_density = 2e-3,
                          .accelerometer_density = 2e-2,
@@ -34,8 +34,8 @@ struct Interval {
 
 Interval MakeInterval(Random* random) {
   Interval interval;
-  testing::MovingImu().Extract(ToNanoseconds(0.3012), ToNanoseconds(0.4034), &interval.readings);
-  interval.calibration = testing::StereoRig().imu;
+  test::MovingImu().Extract(ToNanoseconds(0.3012), ToNanoseconds(0.4034), &interval.readings);
+  interval.calibration = test::StereoRig().imu;
   interval.start.nav.R_GB = ExpQuaternion(RandomVector(random, 1.0));
   interval.start.nav.p_GB = RandomVector(random, 3.0);
   interval.start.nav.v_GB = RandomVector(random, 1.0);
@@ -61,7 +61,7 @@ TEST(Transition, EqualsTheDerivativeOfTheIntegratedState) {
   const NavState end = Predict(interval.start.nav, delta, kGravity);
   const Transition transition = MakeTransition(delta, interval.start.nav, end, kGravity);
 
-  const Eigen::MatrixXd numeric = testing::NumericJacobian(
+  const Eigen::MatrixXd numeric = test::NumericJacobian(
       [&](const Eigen::VectorXd& error) { return EndError(interval, end, error); },
       Eigen::VectorXd::Zero(42));
   // The delta's Jacobians are quadratures of fourth order in the 5 ms step: 1e-7 of their size.
@@ -124,7 +124,7 @@ TEST(Propagation, EqualsTheDenseProduct) {
   const ImuDelta delta = interval.Delta();
   const Transition transition = MakeTransition(
       delta, interval.start.nav, Predict(interval.start.nav, delta, kGravity), kGravity);
-  const RigCalibration rig = testing::StereoRig();
+  const RigCalibration rig = test::StereoRig();
 
   struct Case {
     bool T_g, T_s, T_a;

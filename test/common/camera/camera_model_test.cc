@@ -118,7 +118,7 @@ TEST(CameraModel, JacobianToThePointIsTheDerivative) {
       Eigen::Vector2d uv;
       CameraModel::Jacobian2x3 J;
       ASSERT_TRUE(camera.Project(p, &uv, &J));
-      const Eigen::Matrix<double, 2, 3> numeric = testing::NumericJacobian(
+      const Eigen::Matrix<double, 2, 3> numeric = test::NumericJacobian(
           [&](const Eigen::Vector3d& x) {
             Eigen::Vector2d pixel;
             EXPECT_TRUE(camera.Project(x, &pixel));
@@ -140,7 +140,7 @@ TEST(CameraModel, JacobianToTheParametersIsTheDerivative) {
       CameraModel::ParameterJacobian J;
       ASSERT_TRUE(camera.Project(p, &uv, nullptr, &J));
       // Pixels are linear in each single parameter: a wide step rounds least.
-      const Eigen::Matrix<double, 2, 9> numeric = testing::NumericJacobian(
+      const Eigen::Matrix<double, 2, 9> numeric = test::NumericJacobian(
           [&](const Vector9d& x) {
             CameraModel other = camera;
             other.set_parameters(x.head(camera.parameter_count()));

@@ -60,7 +60,7 @@ Recording Load(const fs::path& folder, std::size_t stride) {
   return recording;
 }
 
-const Eigen::Vector3d kGravity(0.0, 0.0, -9.81);
+const Eigen::Vector3d kGravity_G(0.0, 0.0, -9.81);
 
 class RecordedTruthTest : public testing::Test {
  protected:
@@ -75,7 +75,7 @@ TEST_F(RecordedTruthTest, JumpsOfMh01AreFound) {
   const Timestamp first_image = 1403636584763555584;
   for (const std::size_t stride : {1, 10}) {
     const Recording recording = Load(DataFolder() / "euroc/MH_01_easy_05s", stride);
-    const auto jumps = FindPoseJumps(recording.poses, recording.motion, kGravity);
+    const auto jumps = FindPoseJumps(recording.poses, recording.motion, kGravity_G);
     // Seconds from the first image and sizes that are known, and a fourth of 1.9 mm.
     const double instants_s[4] = {-0.035, 0.765, 11.120, 11.770};
     const double sizes_m[4] = {0.009, 0.005, 0.0019, 0.003};
@@ -101,22 +101,22 @@ TEST_F(RecordedTruthTest, LargestJumpsOfMh03AndMh04AreFound) {
   // The README tells the distance between two stamps, 85 mm and 139 mm: jump and motion (1 to 2 m/s
   // for 5 ms) together.
   const Recording mh03 = Load(DataFolder() / "inertial/MH_03_medium", 1);
-  EXPECT_NEAR(largest(FindPoseJumps(mh03.poses, mh03.motion, kGravity)), 0.081, 0.001);
+  EXPECT_NEAR(largest(FindPoseJumps(mh03.poses, mh03.motion, kGravity_G)), 0.081, 0.001);
   const Recording mh04 = Load(DataFolder() / "inertial/MH_04_difficult", 1);
-  EXPECT_NEAR(largest(FindPoseJumps(mh04.poses, mh04.motion, kGravity)), 0.130, 0.001);
+  EXPECT_NEAR(largest(FindPoseJumps(mh04.poses, mh04.motion, kGravity_G)), 0.130, 0.001);
 }
 
 TEST_F(RecordedTruthTest, NoJumpsWhereThereAreNone) {
   for (const char* name : {"euroc/V1_01_easy_00s", "inertial/V1_03_difficult"}) {
     const Recording recording = Load(DataFolder() / name, 1);
-    EXPECT_TRUE(FindPoseJumps(recording.poses, recording.motion, kGravity).empty()) << name;
+    EXPECT_TRUE(FindPoseJumps(recording.poses, recording.motion, kGravity_G).empty()) << name;
   }
 }
 
 // Simulations fly along such splines: their rates must be those of the real flight.
 TEST_F(RecordedTruthTest, SplineThroughTruthAgreesWithTheImu) {
   Recording recording = Load(DataFolder() / "inertial/MH_04_difficult", 1);
-  RemovePoseJumps(FindPoseJumps(recording.poses, recording.motion, kGravity), &recording.poses);
+  RemovePoseJumps(FindPoseJumps(recording.poses, recording.motion, kGravity_G), &recording.poses);
   const PoseSpline spline = PoseSpline::Fit(recording.poses, 0.05);
   double residual2 = 0.0;
   for (const StampedPose& pose : recording.poses) {
@@ -136,7 +136,7 @@ TEST_F(RecordedTruthTest, SplineThroughTruthAgreesWithTheImu) {
     const Kinematics a = spline.At(t), b = spline.At(t + step);
     const Eigen::Vector3d theta = BoxMinus(a.T_GB.R.conjugate() * b.T_GB.R, delta.R);
     const Eigen::Vector3d s =
-        a.T_GB.R.conjugate() * (b.v_GB - a.v_GB - kGravity * delta.dt_s) - delta.s;
+        a.T_GB.R.conjugate() * (b.v_GB - a.v_GB - kGravity_G * delta.dt_s) - delta.s;
     for (int i = 0; i < 3; ++i) {
       departures[i].push_back(theta[i]);
       departures[i + 3].push_back(s[i]);

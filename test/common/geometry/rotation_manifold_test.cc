@@ -81,17 +81,17 @@ TEST_F(RotationManifoldTest, PlusUndoesMinusSignIncluded) {
 TEST_F(RotationManifoldTest, JacobiansAreTheDerivatives) {
   for (int i = 0; i < 100; ++i) {
     const Eigen::Vector4d x = RandomRotation();
-    const Eigen::Matrix<double, 4, 3> lift = testing::NumericJacobian(
+    const Eigen::Matrix<double, 4, 3> lift = test::NumericJacobian(
         [&](const Eigen::Vector3d& d) { return Plus(x, d); }, Eigen::Vector3d::Zero(), 1e-2);
     EXPECT_LT((PlusJacobian(x) - lift).norm(), 1e-13);
     // Minus is defined on unit quaternions: its derivative counts along Plus.
     const Eigen::Matrix3d drop =
-        testing::NumericJacobian([&](const Eigen::Vector3d& d) { return Minus(Plus(x, d), x); },
-                                 Eigen::Vector3d::Zero(), 1e-2);
+        test::NumericJacobian([&](const Eigen::Vector3d& d) { return Minus(Plus(x, d), x); },
+                              Eigen::Vector3d::Zero(), 1e-2);
     EXPECT_LT((MinusJacobian(x) * lift - drop).norm(), 1e-12);
     // Off the sphere too: Minus does not depend on the length of y.
     const Eigen::Matrix<double, 3, 4> ambient =
-        testing::NumericJacobian([&](const Eigen::Vector4d& y) { return Minus(y, x); }, x, 1e-3);
+        test::NumericJacobian([&](const Eigen::Vector4d& y) { return Minus(y, x); }, x, 1e-3);
     EXPECT_LT((MinusJacobian(x) - ambient).norm(), 1e-12);
   }
 }
@@ -125,7 +125,7 @@ TEST_F(RotationManifoldTest, LiftedTangentJacobianIsTheAmbientDerivative) {
       return R * point;
     };
     const Eigen::Matrix3d J_tangent = -Hat(rotate(x));
-    const Eigen::Matrix<double, 3, 4> ambient = testing::NumericJacobian(rotate, x, 1e-3);
+    const Eigen::Matrix<double, 3, 4> ambient = test::NumericJacobian(rotate, x, 1e-3);
     // 1e-12 of NumericJacobian, twelve entries, points up to 4 from the origin.
     EXPECT_LT((J_tangent * MinusJacobian(x) - ambient).norm(), 1e-11);
   }

@@ -68,7 +68,7 @@ TEST(Se3, LeftJacobianIsTheDerivative) {
   for (const Eigen::Vector3d& theta : HardRotationVectors()) {
     const Vector6d x = Stack(theta, RandomVector(&random));
     const Pose inverse = ExpSe3(x).Inverse();
-    const Matrix6d numeric = testing::NumericJacobian(
+    const Matrix6d numeric = test::NumericJacobian(
         [&](const Vector6d& y) { return LogSe3(ExpSe3(y) * inverse); }, x, 1e-2);
     // NumericJacobian's 1e-13, with translations up to 3.
     EXPECT_LT((LeftJacobianSe3(x) - numeric).norm(), 3e-12) << theta.transpose();

@@ -76,7 +76,7 @@ TEST(So3, LogDoesNotNeedAUnitQuaternion) {
 // exp(theta)'s derivative by theta, in the tangent space on the left: numeric.
 Eigen::Matrix3d NumericLeftJacobian(const Eigen::Vector3d& theta) {
   const Eigen::Quaterniond R = ExpQuaternion(theta);
-  return testing::NumericJacobian(
+  return test::NumericJacobian(
       [&](const Eigen::Vector3d& x) { return BoxMinus(ExpQuaternion(x), R); }, theta, 1e-2);
 }
 
@@ -128,7 +128,7 @@ TEST(So3, LeftAndRightJacobiansAreRelated) {
 TEST(So3, RightJacobianIsTheDerivativeOnTheRight) {
   for (const Eigen::Vector3d& theta : HardRotationVectors()) {
     const Eigen::Quaterniond R = ExpQuaternion(theta);
-    const Eigen::Matrix3d numeric = testing::NumericJacobian(
+    const Eigen::Matrix3d numeric = test::NumericJacobian(
         [&](const Eigen::Vector3d& x) { return Log(R.conjugate() * ExpQuaternion(x)); }, theta,
         1e-2);
     EXPECT_LT((RightJacobian(theta) - numeric).norm(), 5e-13) << theta.transpose();

@@ -10,8 +10,8 @@
 namespace duet {
 namespace {
 
-using testing::NumericJacobian;
-using testing::RelativeDifference;
+using test::NumericJacobian;
+using test::RelativeDifference;
 
 Eigen::Vector3d RandomVector(Random* random, double sigma) {
   return {sigma * random->Normal(), sigma * random->Normal(), sigma * random->Normal()};

@@ -12,8 +12,8 @@
 namespace duet {
 namespace {
 
-using testing::NumericJacobian;
-using testing::RelativeDifference;
+using test::NumericJacobian;
+using test::RelativeDifference;
 
 const Eigen::Vector3d kGravity(0, 0, -9.81);
 

@@ -65,7 +65,7 @@ TEST(StandstillResidual, JacobiansHoldAtRestAndYawStaysFree) {
   j.R_GB = BoxPlus(i.R_GB, Eigen::Vector3d(1e-4, -2e-4, 1e-4));
   j.v_GB = {0.01, 0.02, -0.01};
   const StandstillResidual s = EvaluateStandstill(i, j, {});
-  const Eigen::MatrixXd N = testing::NumericJacobian(
+  const Eigen::MatrixXd N = test::NumericJacobian(
       [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
         return -EvaluateStandstill(BoxPlus(i, Vector9d(x.head<9>())),
                                    BoxPlus(j, Vector9d(x.tail<9>())), {})

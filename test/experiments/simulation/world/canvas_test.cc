@@ -3,14 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "experiments/simulation/world/noise.h"
 
 namespace duet {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 double Sum(const Texture& texture) {
   double sum = 0.0;
@@ -41,11 +40,11 @@ TEST(Canvas, ShapesCoverTheirAreaWhereverTheyLieOnTheGrid) {
 
     Canvas disc({0.0, 0.0, 1.0, 1.0}, 0.01, 0.0);
     disc.FillDisc(0.5, 0.5 + shift, 0.2, 200.0);
-    EXPECT_NEAR(PaintedArea(disc, 200.0), kPi * 0.04, 0.001);
+    EXPECT_NEAR(PaintedArea(disc, 200.0), std::numbers::pi * 0.04, 0.001);
 
     Canvas ring({0.0, 0.0, 1.0, 1.0}, 0.01, 0.0);
     ring.FillRing(0.5, 0.5 + shift, 0.2, 0.05, 200.0);
-    EXPECT_NEAR(PaintedArea(ring, 200.0), kPi * (0.04 - 0.0225), 0.001);
+    EXPECT_NEAR(PaintedArea(ring, 200.0), std::numbers::pi * (0.04 - 0.0225), 0.001);
 
     Canvas triangle({0.0, 0.0, 1.0, 1.0}, 0.01, 0.0);
     triangle.FillConvex({{0.2 + shift, 0.2}, {0.8 + shift, 0.2}, {0.5 + shift, 0.8}}, 200.0);

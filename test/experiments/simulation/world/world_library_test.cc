@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,6 @@ namespace duet {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kPi = 3.14159265358979323846;
 
 WorldOptions Geometry(bool moving) {
   WorldOptions options;
@@ -274,7 +273,7 @@ TEST(WorldTextures, GiveCornersAndContrast) {
     double share = 0.0;
     std::vector<double> greys;
     for (int k = 0; k < 4; ++k) {
-      const Picture picture = See(*world, {0.0, 0.0, 1.5}, 0.5 * kPi * k + 0.2);
+      const Picture picture = See(*world, {0.0, 0.0, 1.5}, 0.5 * std::numbers::pi * k + 0.2);
       share += 0.25 * CornerShare(picture);
       greys.insert(greys.end(), picture.grey.begin(), picture.grey.end());
     }
