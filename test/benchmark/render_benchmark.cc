@@ -13,6 +13,7 @@
 #include "experiments/simulation/render/image_writer.h"
 #include "experiments/simulation/render/renderer.h"
 #include "experiments/simulation/simulator.h"
+#include "experiments/simulation/trajectory_library.h"
 #include "experiments/simulation/world/world_library.h"
 
 namespace duet {

@@ -26,7 +26,7 @@ void PaintTrousers(Canvas& canvas, Random& random) {
   canvas.Frame(all.Part(0.2, 0.7, 0.8, 0.85), 0.008, 150.0);
 }
 
-void PaintHead(Canvas& canvas, Random& random, Side side) {
+void PaintWalkerHead(Canvas& canvas, Random& random, Side side) {
   const Area all = canvas.area();
   canvas.Fill(all, 158.0);
   if (side == Side::kHighX) {  // the face
@@ -185,7 +185,7 @@ void AddWalker(WorldBuilder& builder, const ShuttleWay& way, double height_m) {
         PaintGrain(c, c.area(), r, 0.2);
       },
       body);
-  builder.AddBox({}, {-0.1, -0.08, 0.86 * h}, {0.1, 0.08, h}, look, PaintHead, body);
+  builder.AddBox({}, {-0.1, -0.08, 0.86 * h}, {0.1, 0.08, h}, look, PaintWalkerHead, body);
   // Limbs swing about hips and shoulders, as far as the walker is fast; the phase advances with the
   // distance walked along the way, so that feet do not slide much.
   const auto limb = [&](double y, double joint, double sign, double reach) {

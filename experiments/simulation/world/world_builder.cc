@@ -12,13 +12,14 @@
 namespace duet {
 namespace {
 
+using Side = WorldBuilder::Side;
+
 struct BoxFace {
-  WorldBuilder::Side side;
+  Side side;
   Eigen::Vector3d outward, up;
 };
 
 const std::array<BoxFace, 6>& BoxFaces() {
-  using Side = WorldBuilder::Side;
   static const std::array<BoxFace, 6> faces = {
       {{Side::kLowX, -Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitZ()},
        {Side::kHighX, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitZ()},

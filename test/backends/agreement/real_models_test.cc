@@ -12,23 +12,23 @@
 namespace duet {
 namespace {
 
-constexpr int kBlock = 8;      // frames a track lives; shorter than both windows
-constexpr int kMinLength = 6;  // shorter pieces are dropped, so that both use what is left
-constexpr int kFrames = 34;    // 4 blocks, then frames without tracks: all have ended
+constexpr int kBlock = 8;             // frames a track lives; shorter than both windows
+constexpr int kMinLength = 6;         // shorter pieces are dropped, so that both use what is left
+constexpr int kSimulatedFrames = 34;  // 4 blocks, then frames without tracks: all have ended
 
 // Cuts all tracks at the same frames and empties the last ones: every track has then ended, is
 // shorter than the window, and has been used whole by both estimators.
 std::vector<TrackFrameSet> CutTracks(const std::vector<TrackFrameSet>& frames) {
-  std::vector<TrackFrameSet> cut(frames.begin(), frames.begin() + kFrames);
+  std::vector<TrackFrameSet> cut(frames.begin(), frames.begin() + kSimulatedFrames);
   std::map<std::pair<std::uint64_t, int>, int> lengths;
-  for (int f = 0; f < kFrames; ++f) {
+  for (int f = 0; f < kSimulatedFrames; ++f) {
     for (const TrackObservation& o : cut[f].frames[0].observations)
       ++lengths[{o.track_id, f / kBlock}];
   }
-  for (int f = 0; f < kFrames; ++f) {
+  for (int f = 0; f < kSimulatedFrames; ++f) {
     std::vector<TrackObservation> kept;
     for (TrackObservation o : cut[f].frames[0].observations) {
-      if (f / kBlock >= kFrames / kBlock || lengths[{o.track_id, f / kBlock}] < kMinLength)
+      if (f / kBlock >= kSimulatedFrames / kBlock || lengths[{o.track_id, f / kBlock}] < kMinLength)
         continue;
       o.track_id = o.track_id * 100 + static_cast<std::uint64_t>(f / kBlock);
       kept.push_back(o);

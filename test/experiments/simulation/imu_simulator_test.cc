@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr Timestamp kStart = 1'400'000'000'000'000'000;
+constexpr Timestamp kImuStart = 1'400'000'000'000'000'000;
 
 ImuUnderSimulation NoisyImu() {
   ImuUnderSimulation imu;
@@ -36,10 +36,10 @@ TEST(ImuSimulator, ReadsTheExactRatesAtAnyRate) {
   const auto trajectory = MakeTrajectory("aggressive", 5.0, 0.0);
   for (const double rate_hz : {37.0, 200.0, 1000.0}) {
     const SimulatedImu simulated =
-        SimulateImu(*trajectory, kStart, ExactImu(), {.rate_hz = rate_hz}, 1);
+        SimulateImu(*trajectory, kImuStart, ExactImu(), {.rate_hz = rate_hz}, 1);
     ASSERT_EQ(simulated.samples.size(), static_cast<std::size_t>(5.0 * rate_hz) + 1);
     for (const ImuSample& sample : simulated.samples) {
-      const Kinematics k = trajectory->At(SecondsBetween(kStart, sample.timestamp));
+      const Kinematics k = trajectory->At(SecondsBetween(kImuStart, sample.timestamp));
       EXPECT_EQ(sample.omega_m, k.omega_B);
       EXPECT_LT((sample.a_m - SpecificForce(k)).norm(), 1e-13);
     }
@@ -48,8 +48,8 @@ TEST(ImuSimulator, ReadsTheExactRatesAtAnyRate) {
 
 TEST(ImuSimulator, ReadingsEndAtTheRange) {
   const auto trajectory = MakeTrajectory("aggressive", 20.0, 0.0);
-  const SimulatedImu free = SimulateImu(*trajectory, kStart, NoisyImu(), {}, 3);
-  const SimulatedImu clipped = SimulateImu(*trajectory, kStart, NoisyImu(),
+  const SimulatedImu free = SimulateImu(*trajectory, kImuStart, NoisyImu(), {}, 3);
+  const SimulatedImu clipped = SimulateImu(*trajectory, kImuStart, NoisyImu(),
                                            {.gyroscope_range = 1.0, .accelerometer_range = 9.9}, 3);
   int gyroscope = 0;
   int accelerometer = 0;
@@ -73,16 +73,16 @@ TEST(ImuSimulator, JitterMovesTheInstantsAndWhereToldTheStamps) {
   const auto trajectory = MakeTrajectory("lissajous", 30.0, 0.0);
   const double jitter_s = 4e-4;
   const SimulatedImu stamped =
-      SimulateImu(*trajectory, kStart, ExactImu(), {.jitter_s = jitter_s}, 5);
-  const SimulatedImu even = SimulateImu(*trajectory, kStart, ExactImu(),
+      SimulateImu(*trajectory, kImuStart, ExactImu(), {.jitter_s = jitter_s}, 5);
+  const SimulatedImu even = SimulateImu(*trajectory, kImuStart, ExactImu(),
                                         {.jitter_s = jitter_s, .jitter_is_stamped = false}, 5);
   ASSERT_EQ(stamped.samples.size(), even.samples.size());
   double square = 0.0;
   for (std::size_t i = 0; i < even.samples.size(); ++i) {
-    EXPECT_EQ(even.samples[i].timestamp, EvenStamp(kStart, static_cast<int>(i), 200.0));
+    EXPECT_EQ(even.samples[i].timestamp, EvenStamp(kImuStart, static_cast<int>(i), 200.0));
     // The same instants: the stamps alone differ.
     EXPECT_EQ(stamped.samples[i].omega_m, even.samples[i].omega_m);
-    const Kinematics k = trajectory->At(SecondsBetween(kStart, stamped.samples[i].timestamp));
+    const Kinematics k = trajectory->At(SecondsBetween(kImuStart, stamped.samples[i].timestamp));
     EXPECT_LT((stamped.samples[i].omega_m - k.omega_B).norm(), 1e-12);
     EXPECT_EQ(stamped.truth[i].instant, stamped.samples[i].timestamp);
     EXPECT_LT((stamped.truth[i].nav.p_GB - k.T_GB.p).norm(), 1e-12);
@@ -99,8 +99,9 @@ TEST(ImuSimulator, JitterMovesTheInstantsAndWhereToldTheStamps) {
 
 TEST(ImuSimulator, LostSamplesAreCountedAndChangeNoOther) {
   const auto trajectory = MakeTrajectory("room_walk", 30.0, 0.0);
-  const SimulatedImu whole = SimulateImu(*trajectory, kStart, NoisyImu(), {}, 7);
-  const SimulatedImu lossy = SimulateImu(*trajectory, kStart, NoisyImu(), {.drop_share = 0.1}, 7);
+  const SimulatedImu whole = SimulateImu(*trajectory, kImuStart, NoisyImu(), {}, 7);
+  const SimulatedImu lossy =
+      SimulateImu(*trajectory, kImuStart, NoisyImu(), {.drop_share = 0.1}, 7);
   EXPECT_EQ(lossy.samples.size() + static_cast<std::size_t>(lossy.dropped), whole.samples.size());
   EXPECT_EQ(lossy.truth.size(), whole.truth.size());
   // Binomial, 6001 samples: sigma 23; four of those.

@@ -8,8 +8,8 @@
 
 #include "common/geometry/so3.h"
 #include "common/support/input_error.h"
-#include "experiments/simulation/scenario.h"
 #include "experiments/simulation/imu_simulator.h"
+#include "experiments/simulation/scenario.h"
 #include "experiments/simulation/trajectory_library.h"
 
 namespace duet {
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-constexpr Timestamp kStart = 1'400'000'000'000'000'000;
+constexpr Timestamp kMotionStart = 1'400'000'000'000'000'000;
 const Vector3d kBiasGyro(-0.002, 0.021, 0.075);
 const Vector3d kBiasAccelerometer(-0.05, 0.12, 0.07);
 
@@ -30,13 +30,13 @@ Recording Flight(double duration_s) {
                          .g_G = {0, 0, -9.81}};
   Recording recording;
   recording.folder = "flight";
-  recording.imu = SimulateImu(*flight, kStart, imu, {}, 3).samples;
+  recording.imu = SimulateImu(*flight, kMotionStart, imu, {}, 3).samples;
   recording.imu_sensor.noise = imu.noise;
   recording.truth.emplace();
   recording.truth_file = "truth.csv";
   for (int i = 200; i / 200.0 <= duration_s; ++i) {
     recording.truth->poses.push_back(
-        {kStart + ToNanoseconds(i / 200.0), flight->At(i / 200.0).T_GB});
+        {kMotionStart + ToNanoseconds(i / 200.0), flight->At(i / 200.0).T_GB});
   }
   return recording;
 }

@@ -15,12 +15,12 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-constexpr Timestamp kStart = 1'400'000'000'000'000'000;
+constexpr Timestamp kSplineStart = 1'400'000'000'000'000'000;
 
 std::vector<StampedPose> Poses(const Trajectory& trajectory, double rate_hz) {
   std::vector<StampedPose> poses;
   for (int i = 0; i / rate_hz <= trajectory.duration_s(); ++i) {
-    poses.push_back({kStart + ToNanoseconds(i / rate_hz), trajectory.At(i / rate_hz).T_GB});
+    poses.push_back({kSplineStart + ToNanoseconds(i / rate_hz), trajectory.At(i / rate_hz).T_GB});
   }
   return poses;
 }

@@ -7,6 +7,7 @@
 #include "common/support/input_error.h"
 #include "experiments/simulation/euroc_sequences.h"
 #include "experiments/simulation/trajectory_library.h"
+#include "experiments/simulation/world/world_library.h"
 
 namespace duet {
 namespace {
