@@ -1,6 +1,7 @@
 #include <gflags/gflags.h>
 
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "common/dataset/recording.h"
@@ -65,6 +66,17 @@ std::string ReportText(int camera, const TrackAccuracyReport& report) {
   return text;
 }
 
+/// How many frames each track of a camera lasts.
+ErrorSummary TrackLengths(const std::vector<TrackFrameSet>& frames, std::size_t camera) {
+  std::map<std::uint64_t, int> lengths;
+  for (const TrackFrameSet& set : frames) {
+    for (const TrackObservation& each : set.frames[camera].observations) ++lengths[each.track_id];
+  }
+  std::vector<double> values;
+  for (const auto& [id, length] : lengths) values.push_back(length);
+  return Summarize(std::move(values));
+}
+
 int RunTrackError(const CommandLine& line) {
   if (!FLAGS_out.empty()) RequireAbsent(FLAGS_out);
   const SimulatedDatasetOptions simulation = ReadSimulationOf(FLAGS_dataset);
@@ -101,7 +113,18 @@ int RunTrackError(const CommandLine& line) {
     progress.Finish();
     const TrackAccuracyReport report = accuracy.Report();
     text += ReportText(number, report);
+    const ErrorSummary lengths = TrackLengths(recording.tracks.frames, k);
+    char line_text[200];
+    std::snprintf(line_text, sizeof line_text,
+                  "  %d tracks, of %.0f frames (median; quartiles %.0f and %.0f, mean %.1f, 95 %% "
+                  "below %.0f)\n",
+                  lengths.count, lengths.median, lengths.p25, lengths.p75, lengths.mean,
+                  lengths.p95);
+    text += line_text;
     json["cameras"].push_back({{"camera", number}});
+    json["cameras"].back()["track_frames"] = {{"count", lengths.count}, {"mean", lengths.mean},
+                                              {"p25", lengths.p25},     {"median", lengths.median},
+                                              {"p75", lengths.p75},     {"p95", lengths.p95}};
     json["cameras"].back().update(ReportJson(report));
   }
   if (!FLAGS_out.empty()) {

@@ -57,6 +57,7 @@ struct SimulationOptions {
   double weak_share = 0.0;
   double weak_track_frames = 4.0;
   double pixel_noise_px = 1.0;
+  double pixel_drift_px = 0.0;
   double outlier_share = 0.0;
   double mismatch_share = 0.0;
   double outlier_px = 30.0;
@@ -215,6 +216,13 @@ void SimulationOptions::Visit(Visitor& v) {
           {.doc = "Mean length of those.", .unit = "frames", .min = 1});
   v.Field("pixel_noise_px", &pixel_noise_px,
           {.doc = "Noise of a pixel, per axis.", .unit = "px", .min = 0, .max = 50});
+  v.Field(
+      "pixel_drift_px", &pixel_drift_px,
+      {.doc = "A track walks away from its point by this much a frame, per axis; the first camera "
+              "and the second each for itself.",
+       .unit = "px",
+       .min = 0,
+       .max = 5});
   v.Field("outlier_share", &outlier_share,
           {.doc = "Share of observations thrown off by 5 to outlier_px.", .min = 0, .max = 1});
   v.Field("mismatch_share", &mismatch_share,

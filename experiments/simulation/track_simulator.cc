@@ -100,19 +100,31 @@ void TrackSimulator::Mismatch(Timestamp stamp, Track* track) {
   }
 }
 
-TrackObservation TrackSimulator::Noisy(std::uint64_t id, const Eigen::Vector2d& uv) {
+void TrackSimulator::Drift() {
+  const double sigma_px = options_.noise_scale * options_.pixel_drift_px;
+  if (sigma_px == 0.0) return;
+  for (Track& track : tracks_) {
+    track.drift.resize(camera_.rig().cameras.size(), Eigen::Vector2d::Zero());
+    for (Eigen::Vector2d& drift : track.drift) drift += sigma_px * random_.NormalVector<2>();
+  }
+}
+
+TrackObservation TrackSimulator::Noisy(const Track& track, int camera, const Eigen::Vector2d& uv) {
   const double sigma_px = options_.noise_scale * options_.pixel_noise_px;
   Eigen::Vector2d noisy = uv + sigma_px * random_.NormalVector<2>();
+  if (!track.drift.empty()) noisy += track.drift[static_cast<std::size_t>(camera)];
   if (options_.outlier_share > 0.0 && random_.Uniform() < options_.outlier_share) {
     const double angle = random_.Uniform(0.0, 2.0 * std::numbers::pi);
     const double throw_px = random_.Uniform(5.0, options_.outlier_px);
     noisy += throw_px * Eigen::Vector2d(std::cos(angle), std::sin(angle));
   }
-  return {.track_id = id, .u = static_cast<float>(noisy.x()), .v = static_cast<float>(noisy.y())};
+  return {
+      .track_id = track.id, .u = static_cast<float>(noisy.x()), .v = static_cast<float>(noisy.y())};
 }
 
 TrackFrameSet TrackSimulator::Observe(Timestamp stamp) {
   EndTracks(stamp);
+  Drift();
   if (options_.mismatch_share > 0.0) {
     for (Track& track : tracks_) {
       if (random_.Uniform() < options_.mismatch_share) Mismatch(stamp, &track);
@@ -129,7 +141,7 @@ TrackFrameSet TrackSimulator::Observe(Timestamp stamp) {
     for (const Track& track : tracks_) {
       const std::optional<Eigen::Vector2d> uv =
           camera == 0 ? track.uv : See(camera, stamp, track.point);
-      if (uv) frame.observations.push_back(Noisy(track.id, *uv));
+      if (uv) frame.observations.push_back(Noisy(track, camera, *uv));
     }
     set.frames.push_back(std::move(frame));
   }

@@ -28,6 +28,7 @@ class TrackSimulator {
     ScenePoint point;
     Eigen::Vector2d uv;  // without noise, first camera
     bool weak = false;
+    std::vector<Eigen::Vector2d> drift = {};  // a camera; empty without drift
   };
 
   // The pixel of a landmark; nothing where it is out of view or hidden.
@@ -35,11 +36,12 @@ class TrackSimulator {
                                                    const ScenePoint& point) const;
   // A landmark that is seen at `uv` in the first camera.
   [[nodiscard]] std::optional<ScenePoint> DrawPoint(Timestamp stamp, const Eigen::Vector2d& uv);
+  void Drift();
   void EndTracks(Timestamp stamp);
   void StartTracks(Timestamp stamp);
   void Mismatch(Timestamp stamp, Track* track);
   [[nodiscard]] int CellOf(const Eigen::Vector2d& uv) const;
-  [[nodiscard]] TrackObservation Noisy(std::uint64_t id, const Eigen::Vector2d& uv);
+  [[nodiscard]] TrackObservation Noisy(const Track& track, int camera, const Eigen::Vector2d& uv);
 
   const SimulationOptions& options_;
   MovingCamera camera_;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -16,6 +17,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsSupersetOf;
+using testing::Not;
 
 using Json = nlohmann::json;
 
@@ -304,14 +306,30 @@ TEST_F(SimulatedTest, AnInterruptedComparisonKeepsTheEstimatorThatWasDone) {
   EXPECT_EQ(ReadJson(results / "out/manifest.json")["outcome"]["status"], "interrupted");
 }
 
+// Rendered on first use, then taken from the cache.
 TEST(DefaultComparisonTest, NeedsNoDataSet) {
   const TemporaryFolder folder;
-  const ProgramResult compare =
-      RunDuet({"compare", "--duration=5", "--out", folder / "out", "--quiet"});
-  EXPECT_EQ(compare.status, 0) << compare.err;
-  EXPECT_THAT(compare.out, HasSubstr("room_easy"));
-  EXPECT_TRUE(fs::exists(folder / "out/dataset/mav0/imu0/data.csv"));
-  EXPECT_EQ(ReadJson(folder / "out/comparison.json")["window"]["status"], "tracking");
+  const char* told = std::getenv("DUET_CACHE");
+  const std::string before = told == nullptr ? "" : told;
+  setenv("DUET_CACHE", (folder / "cache").c_str(), 1);
+  const ProgramResult first =
+      RunDuet({"compare", "--start=3", "--duration=5", "--out", folder / "first"});
+  const ProgramResult second =
+      RunDuet({"compare", "--start=3", "--duration=5", "--out", folder / "second"});
+  if (told == nullptr) {
+    unsetenv("DUET_CACHE");
+  } else {
+    setenv("DUET_CACHE", before.c_str(), 1);
+  }
+  EXPECT_EQ(first.status, 0) << first.err;
+  EXPECT_THAT(first.err, HasSubstr("rendering"));
+  EXPECT_THAT(first.out, HasSubstr("simulated: V1_01_easy, world room"));
+  EXPECT_EQ(FilesIn(folder / "cache").size(), 1U);
+  EXPECT_EQ(ReadJson(folder / "first/comparison.json")["window"]["status"], "tracking");
+  EXPECT_EQ(second.status, 0) << second.err;
+  EXPECT_THAT(second.err, Not(HasSubstr("rendering")));
+  EXPECT_EQ(ReadJson(folder / "second/comparison.json")["tracks_sha256"],
+            ReadJson(folder / "first/comparison.json")["tracks_sha256"]);
 }
 
 }  // namespace
