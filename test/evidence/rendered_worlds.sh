@@ -21,7 +21,7 @@ for preset in "$@"; do
   # a walk d a frame, per axis, make 4 s^2 + 2 n d^2 over n frames (both axes, both ends).
   read -r noise drift < <(awk '/frame to frame/ { f = $5 } /after 20 frames/ { D = $5 }
     END { d2 = (D * D > f * f) ? (D * D - f * f) / 38 : 0; s2 = f * f / 4 - d2 / 2
-          printf "%.4f %.4f\n", s2 > 0 ? sqrt(s2) : 0.001, sqrt(d2) }' "$out/$preset-trackerror.txt")
+          printf("%.4f %.4f\n", (s2 > 0 ? sqrt(s2) : 0.001), sqrt(d2)) }' "$out/$preset-trackerror.txt")
   echo "simulated tracks: noise $noise px, drift $drift px a frame"
   "$duet" simulate --quiet --preset "$preset" --set "pixel_noise_px=$noise" \
     --set "pixel_drift_px=$drift" \
