@@ -15,10 +15,10 @@ picture() {
 
 picture room 9 --preset easy_room
 picture bare_room 9 --preset easy_room --world bare_room
-picture hall 14 --preset easy_hall
+picture hall 35 --preset easy_hall
 picture street 12 --preset street_drive
 picture dark_hall 20 --preset dark_hall
-picture walkers 17 --preset easy_hall --set moving_bodies=true
+picture walkers 28 --preset easy_room --set moving_bodies=true
 picture blur 9.2 --preset difficult_room --set render.exposure_s=0.03
 picture rolling_shutter 9.2 --preset difficult_room --set render.exposure_s=0 --set t_r_s=0.06
 picture global_shutter 9.2 --preset difficult_room --set render.exposure_s=0
