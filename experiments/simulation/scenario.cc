@@ -57,6 +57,14 @@ void SetSensors(const SimulationOptions& options, Scenario* scenario) {
     scenario->true_rig.t_r_s = options.t_r_s;
   }
   scenario->noise = Scaled(noise, options.noise_scale);
+  const RigCalibration& rig = scenario->true_rig;
+  // Half an exposure of at most 0.1 s comes on top; all of it has to lie within the margin.
+  constexpr double kLargestDelay_s = kImuMargin_s - 0.05;
+  if (std::abs(rig.t_d_s) + 0.5 * std::abs(rig.t_r_s) > kLargestDelay_s) {
+    throw InputError(
+        options.sensors, 0, "time_offset_s, readout_time_s",
+        "expected |t_d| + |t_r| / 2 of at most " + FormatNumber(kLargestDelay_s) + " s");
+  }
 }
 
 struct Box {
