@@ -193,6 +193,8 @@ std::string CommandHelp(const Command& command) {
     if (flag.repeatable) meaning += " May be repeated.";
     if (flag.required) {
       meaning += " Required.";
+    } else if (!flag.without.empty()) {
+      meaning += " Default: " + flag.without + ".";
     } else if (!info.default_value.empty()) {
       meaning += " Default: " + info.default_value + ".";
     }

@@ -14,6 +14,7 @@ struct FlagUse {
   bool required = false;
   bool repeatable = false;                ///< every value is kept: CommandLine::All
   std::vector<std::string> choices = {};  ///< the values allowed; empty: any
+  std::string without = {};  ///< for the help, where it is not the flag's default: "all cores"
 };
 
 /// A command as it was called: which flags were given. Values are in gflags' variables; those of

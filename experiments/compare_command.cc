@@ -51,15 +51,15 @@ class Comparator {
   int Run(const std::vector<Requirement>& requirements) {
     if (dataset_.empty()) {
       const DefaultRecording made =
-          FindOrMakeDefaultRecording(FLAGS_cameras == "0,1" ? 2 : 1, FLAGS_seed, FLAGS_quiet);
+          FindOrMakeDefaultRecording(FLAGS_cameras == "0" ? 1 : 2, FLAGS_seed, FLAGS_quiet);
       if (made.interrupted) return kInterrupted;
       dataset_ = made.folder.string();
       if (!line_.Given("init")) FLAGS_init = "groundtruth";
     }
     session_ = OpenSession(line_, dataset_, FLAGS_tracks);
     (void)session_.Start();  // refuses a start that the recording does not allow, before the work
-    comparison_.dataset = session_.recording.label.empty() ? NameOf(session_.recording.folder)
-                                                           : session_.recording.label;
+    comparison_.dataset = NameOf(session_.recording.folder);
+    if (!session_.recording.label.empty()) comparison_.dataset += ": " + session_.recording.label;
     if (const int status = Track(); status != kDone) return Finish(status);
     for (const std::string& name : EstimatorNames()) {
       if (const int status = RunEstimator(name); status != kDone) return Finish(status);

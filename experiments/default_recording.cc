@@ -43,6 +43,9 @@ DefaultRecording FindOrMakeDefaultRecording(int cameras, std::uint64_t seed, boo
   options.render = preset.render;
   options.simulation.duration_s = kDuration_s;
   options.simulation.cameras = cameras;
+  if (seed > 2'000'000'000) {
+    throw InputError("", 0, "--seed", "expected at most 2000000000 for a simulation");
+  }
   if (seed != 0) options.simulation.seed = static_cast<int>(seed);
   options.render.seed = options.simulation.seed;
   options.images = true;
@@ -50,12 +53,17 @@ DefaultRecording FindOrMakeDefaultRecording(int cameras, std::uint64_t seed, boo
   options.quiet = quiet;
   ConfigSources sources;
   ReadSimulatedDatasetOptions(&sources, &options);
-  const std::string name = std::string(kPreset) + "-" + sources.SettingsSha256().substr(0, 12) +
-                           "-" + GetBuildInfo().commit;
+  const std::string& commit = GetBuildInfo().commit;
+  const std::string name =
+      std::string(kPreset) + "-" + sources.SettingsSha256().substr(0, 12) + "-" + commit;
   // Any number of threads makes the same images.
-  options.render.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  options.render.threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64);
   DefaultRecording recording{.folder = CacheFolder() / name};
-  if (fs::exists(recording.folder)) return recording;
+  if (fs::exists(recording.folder)) {
+    // Changed sources may render otherwise.
+    if (commit != "unknown" && !commit.ends_with("-dirty")) return recording;
+    fs::remove_all(recording.folder);
+  }
   try {
     recording.interrupted =
         WriteSimulatedDataset(options, sources.ResolvedYaml(), recording.folder).interrupted;

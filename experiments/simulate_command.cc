@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "common/config/config_sources.h"
+#include "common/config/yaml_node.h"
 #include "common/support/input_error.h"
 #include "experiments/commands.h"
 #include "experiments/common_flags.h"
@@ -14,6 +15,7 @@
 #include "experiments/simulated_dataset.h"
 #include "experiments/simulation/euroc_sequences.h"
 #include "experiments/simulation/render/render_presets.h"
+#include "experiments/simulation/scenario.h"
 #include "experiments/simulation/trajectory_library.h"
 #include "experiments/simulation/world/world_library.h"
 
@@ -57,6 +59,45 @@ void PrintList() {
   std::fputs(text.c_str(), stdout);
 }
 
+// Keys given on the command line that the scenario takes from elsewhere.
+void RefuseIneffective(const ConfigSources& sources, const SimulationOptions& options) {
+  std::vector<std::string> from_sensors = {"t_d_s",
+                                           "t_r_s",
+                                           "gyroscope_density",
+                                           "accelerometer_density",
+                                           "gyroscope_random_walk",
+                                           "accelerometer_random_walk",
+                                           "gravity_m_per_s2"};
+  const std::vector<std::string> from_imu = {"trajectory",
+                                             "rest_s",
+                                             "b_g_rad_per_s",
+                                             "b_a_m_per_s2",
+                                             "imu_rate_hz",
+                                             "gyroscope_density",
+                                             "accelerometer_density",
+                                             "gyroscope_random_walk",
+                                             "accelerometer_random_walk",
+                                             "gravity_m_per_s2",
+                                             "imu_jitter_s",
+                                             "imu_jitter_is_stamped",
+                                             "imu_drop_share",
+                                             "gyroscope_range_rad_per_s",
+                                             "accelerometer_range_m_per_s2"};
+  const auto refuse = [&](const std::vector<std::string>& keys, const std::string& why) {
+    for (const ResolvedValue& value : sources.values()) {
+      if (value.origin != "command line") continue;
+      for (const std::string& key : keys) {
+        if (value.key != "simulation." + key) continue;
+        throw InputError("", 0, value.key, "has no effect " + why);
+      }
+    }
+  };
+  if (!options.sensors.empty()) refuse(from_sensors, "beside sensors, which tell it");
+  if (!options.imu.empty()) refuse(from_imu, "beside imu: the recorded IMU is taken as it is");
+  if (IsTrajectoryFile(options.trajectory)) refuse({"rest_s"}, "on a truth's trajectory");
+  if (options.world == kBoxWorld) refuse({"world_scale", "moving_bodies"}, "in world box");
+}
+
 SimulatedDatasetOptions ReadOptions(const CommandLine& line, ConfigSources* sources) {
   SimulatedDatasetOptions options;
   if (const RenderPreset* preset = FindRenderPreset(FLAGS_preset)) {
@@ -66,7 +107,7 @@ SimulatedDatasetOptions ReadOptions(const CommandLine& line, ConfigSources* sour
     options.simulation = SimulationPreset(FLAGS_preset);
   }
   // A truth decides about its length itself.
-  if (!FLAGS_imu.empty() || std::filesystem::exists(FLAGS_trajectory)) {
+  if (!FLAGS_imu.empty() || IsTrajectoryFile(FLAGS_trajectory)) {
     options.simulation.duration_s = 0.0;
   }
   for (const std::string& file : line.All("config")) sources->AddFile(file);
@@ -78,25 +119,28 @@ SimulatedDatasetOptions ReadOptions(const CommandLine& line, ConfigSources* sour
   }
   const auto set_text = [&](const char* flag, const std::string& value) {
     if (!line.Given(flag)) return;
-    // Paths absolute, so that simulation.yaml can be used from anywhere; as a quoted YAML scalar.
-    const std::string text =
-        std::filesystem::exists(value) ? std::filesystem::absolute(value).string() : value;
-    sources->AddOverride("simulation." + std::string(flag) + "=\"" + text + "\"");
+    sources->AddOverride("simulation." + std::string(flag) + "=" + QuotedYaml(value));
+  };
+  // Paths absolute, so that simulation.yaml can be used from anywhere.
+  const auto absolute = [](const std::string& path) {
+    return path.empty() ? path : std::filesystem::absolute(path).lexically_normal().string();
   };
   set_text("world", FLAGS_world);
-  set_text("trajectory", FLAGS_trajectory);
-  set_text("sensors", FLAGS_sensors);
-  set_text("imu", FLAGS_imu);
+  set_text("trajectory",
+           IsTrajectoryFile(FLAGS_trajectory) ? absolute(FLAGS_trajectory) : FLAGS_trajectory);
+  set_text("sensors", absolute(FLAGS_sensors));
+  set_text("imu", absolute(FLAGS_imu));
   if (line.Given("seed")) {
     sources->AddOverride("simulation.seed=" + std::to_string(FLAGS_seed));
     sources->AddOverride("render.seed=" + std::to_string(FLAGS_seed));
   }
-  options.render.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  options.render.threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64);
   if (line.Given("threads")) {
     sources->AddOverride("render.threads=" + std::to_string(FLAGS_threads));
   }
   ReadSimulatedDatasetOptions(sources, &options);
   sources->CheckAllKeysUsed();
+  RefuseIneffective(*sources, options.simulation);
   options.images = FLAGS_images;
   options.tracks = !FLAGS_images || FLAGS_point_tracks;
   return options;
@@ -177,12 +221,12 @@ Command SimulateCommand() {
                 {.name = "imu", .value = "DIR"},
                 {.name = "images"},
                 {.name = "point_tracks"},
-                {.name = "picture", .value = "S"},
+                {.name = "picture", .value = "S", .without = "the whole data set"},
                 {.name = "config", .value = "FILE", .repeatable = true},
                 {.name = "set", .value = "KEY=VALUE", .repeatable = true},
-                {.name = "seed", .value = "N"},
+                {.name = "seed", .value = "N", .without = "1"},
                 {.name = "seeds", .value = "A..B"},
-                {.name = "threads", .value = "N"},
+                {.name = "threads", .value = "N", .without = "all cores"},
                 {.name = "list"},
                 {.name = "quiet"}},
       .run = RunSimulate};

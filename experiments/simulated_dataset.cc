@@ -38,6 +38,10 @@ WrittenDataset WriteSimulatedDataset(const SimulatedDatasetOptions& options,
   const Scenario scenario = MakeScenario(options.simulation, options.images);
   if (options.images && !scenario.world) ThrowNoSurfaces();
   const SimulatedRecording simulated = SimulateIn(scenario, options.simulation);
+  if (Interrupted()) {
+    written.interrupted = true;
+    return written;
+  }
   WriteSimulatedRecording(simulated, output.path(), options.tracks);
   if (scenario.recorded) {
     const RecordedMotionReport& report = scenario.recorded->report;
@@ -74,16 +78,17 @@ void WritePicture(const SimulatedDatasetOptions& options, double after_s,
                   const std::filesystem::path& file) {
   const Scenario scenario = MakeScenario(options.simulation, true);
   if (!scenario.world) ThrowNoSurfaces();
-  const double t_s = kImuMargin_s + after_s;
-  if (!(after_s >= 0.0) || t_s + kImuMargin_s > scenario.trajectory->duration_s()) {
+  const std::vector<Timestamp> frames = FrameStamps(scenario, options.simulation);
+  const double last_s = SecondsBetween(frames.front(), frames.back());
+  if (!(after_s >= 0.0 && after_s <= last_s)) {
     throw InputError("", 0, "--picture",
-                     "expected a time within the simulation, 0 to " +
-                         FormatNumber(scenario.trajectory->duration_s() - 2.0 * kImuMargin_s) +
-                         " s");
+                     "expected a time within the simulation, 0 to " + FormatNumber(last_s) + " s");
   }
+  const Timestamp stamp = frames.front() + ToNanoseconds(after_s);
+  CheckIsFree(scenario, stamp);
   const Renderer renderer(options.render, TrueCamera(scenario.true_rig, scenario.world,
                                                      scenario.trajectory, scenario.start));
-  const cv::Mat image = renderer.Render(0, scenario.start + ToNanoseconds(t_s)).image;
+  const cv::Mat image = renderer.Render(0, stamp).image;
   bool written = false;
   try {
     written = cv::imwrite(file.string(), image);

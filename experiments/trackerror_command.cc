@@ -90,6 +90,12 @@ int RunTrackError(const CommandLine& line) {
   if (line.Given("tracks")) recording_options.tracks_folder = FLAGS_tracks;
   const Recording recording = LoadRecording(FLAGS_dataset, recording_options);
   const Scenario scenario = MakeScenario(simulation.simulation, false);
+  for (const int number : recording.camera_numbers) {
+    if (number >= static_cast<int>(scenario.true_rig.cameras.size())) {
+      throw InputError("", 0, "--cameras",
+                       "the simulation has no camera " + std::to_string(number));
+    }
+  }
   const TrueCamera truth(scenario.true_rig, scenario.world, scenario.trajectory, scenario.start,
                          FLAGS_ignore_rolling_shutter ? TrueCamera::Shutter::kMiddleRow
                                                       : TrueCamera::Shutter::kAsItIs);
@@ -107,7 +113,9 @@ int RunTrackError(const CommandLine& line) {
                       FLAGS_quiet);
     std::int64_t done = 0;
     for (const TrackFrameSet& set : recording.tracks.frames) {
-      accuracy.Add(set.frames[k]);
+      TrackFrame frame = set.frames[k];
+      frame.camera = number;  // of the rig that was simulated, not of those that are read
+      accuracy.Add(frame);
       progress.Update(++done);
     }
     progress.Finish();

@@ -158,4 +158,13 @@ YamlNode ParseYaml(std::string_view text, const std::string& file) {
   }
 }
 
+std::string QuotedYaml(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + "\"";
+}
+
 }  // namespace duet

@@ -29,6 +29,9 @@ struct YamlNode::Entry {
   YamlNode value;
 };
 
+/// The text as a double-quoted YAML scalar.
+[[nodiscard]] std::string QuotedYaml(const std::string& text);
+
 /// Reads one YAML document; `file` is named in errors. Throws InputError for anything that is not
 /// well formed and, beyond YAML, for repeated keys, keys that are no scalars, anchors and aliases,
 /// tags and several documents. EuRoC's first line `%YAML:1.0` (OpenCV's, no YAML) and OpenCV's

@@ -308,16 +308,6 @@ void MakeFolder(const fs::path& folder) {
   if (error) throw OutputError(folder.string(), "cannot be made: " + error.message());
 }
 
-/// A double-quoted YAML scalar.
-std::string Quoted(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + "\"";
-}
-
 }  // namespace
 
 std::vector<Timestamp> Recording::FrameStamps() const {
@@ -355,7 +345,7 @@ void WriteRecording(const Recording& recording, const fs::path& folder) {
   WriteTextFile(mav / "imu0" / "data.csv", WriteImuTable(recording.imu));
   WriteTextFile(mav / "imu0" / "sensor.yaml", WriteImuSensor(recording.imu_sensor));
   if (!recording.label.empty()) {
-    WriteTextFile(mav / "recording.yaml", "label: " + Quoted(recording.label) + "\n");
+    WriteTextFile(mav / "recording.yaml", "label: " + QuotedYaml(recording.label) + "\n");
   }
   if (recording.truth) {
     const fs::path truth = mav / "state_groundtruth_estimate0";

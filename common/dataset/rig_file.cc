@@ -15,7 +15,7 @@ RigFile ReadFolder(const fs::path& folder) {
   RigFile rig;
   const fs::path imu = mav / "imu0" / "sensor.yaml";
   rig.imu = ReadImuSensor(ReadTextFile(imu), imu.string());
-  for (int k = 0; k < 2; ++k) {
+  for (std::size_t k = 0; k < 2 && rig.cameras.size() == k; ++k) {
     for (const char* kind : {"cam", "tracks"}) {
       const fs::path camera = mav / (kind + std::to_string(k)) / "sensor.yaml";
       if (!fs::exists(camera)) continue;

@@ -1,5 +1,6 @@
 #include "experiments/simulation/moving_camera.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "common/support/logging.h"
@@ -27,6 +28,8 @@ double MovingCamera::TimeOfLine(int camera, Timestamp stamp, double line) const 
   const double t_s = SecondsBetween(start_, stamp) + rig_.t_d_s;
   if (shutter_ == Shutter::kMiddleRow) return t_s;
   const double count = LineCount(camera);
+  // No line is read outside of the image: a point there is seen with the nearest one.
+  line = std::clamp(line, -0.5, count - 0.5);
   return t_s + (line - 0.5 * (count - 1.0)) * rig_.t_r_s / count;
 }
 

@@ -38,7 +38,8 @@ class MovingCamera {
 
   /// Rows, or columns where these are read one after the other.
   [[nodiscard]] int LineCount(int camera) const;
-  /// The trajectory's time [s] at which a line is read (at the middle of its exposure).
+  /// The trajectory's time [s] at which a line is read (at the middle of its exposure); outside of
+  /// the image that of the nearest.
   [[nodiscard]] double TimeOfLine(int camera, Timestamp stamp, double line) const;
   [[nodiscard]] double TimeOf(int camera, Timestamp stamp, const Eigen::Vector2d& uv) const {
     return TimeOfLine(camera, stamp, rig_.readout_by_columns ? uv.x() : uv.y());

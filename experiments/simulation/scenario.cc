@@ -57,6 +57,11 @@ void SetSensors(const SimulationOptions& options, Scenario* scenario) {
     scenario->true_rig.t_r_s = options.t_r_s;
   }
   scenario->noise = Scaled(noise, options.noise_scale);
+  if (!(scenario->imu_rate_hz >= 10.0 && scenario->imu_rate_hz <= 20000.0) ||
+      !(scenario->camera_rate_hz >= 1.0 && scenario->camera_rate_hz <= 200.0)) {
+    throw InputError(options.sensors, 0, "rate_hz",
+                     "expected an IMU of 10 to 20000 Hz and cameras of 1 to 200 Hz");
+  }
   const RigCalibration& rig = scenario->true_rig;
   // Half an exposure of at most 0.1 s comes on top; all of it has to lie within the margin.
   constexpr double kLargestDelay_s = kImuMargin_s - 0.05;
@@ -212,13 +217,19 @@ double ToldScale(const SimulationOptions& options) {
 
 }  // namespace
 
+bool IsTrajectoryFile(const std::string& trajectory) {
+  const std::vector<std::string> names = TrajectoryNames();
+  return std::find(names.begin(), names.end(), trajectory) == names.end() &&
+         fs::is_regular_file(trajectory);
+}
+
 Scenario MakeScenario(const SimulationOptions& options, bool textures) {
   if (!options.imu.empty()) {
     return MakeScenario(options, LoadRecordedMotion(options.imu), textures);
   }
   Scenario scenario;
   SetSensors(options, &scenario);
-  if (fs::exists(options.trajectory)) {
+  if (IsTrajectoryFile(options.trajectory)) {
     const auto spline = SplineThroughFile(options.trajectory);
     scenario.trajectory = spline;
     scenario.start = spline->spline().start();

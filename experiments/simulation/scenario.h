@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "experiments/simulation/recorded_motion.h"
 #include "experiments/simulation/scene.h"
@@ -28,6 +29,9 @@ struct Scenario {
   std::string label;
 };
 
+/// True for a file that is not also the name of a trajectory: names win.
+[[nodiscard]] bool IsTrajectoryFile(const std::string& trajectory);
+
 /// Sensors (options.sensors, else EuRoC's), motion (a named trajectory, a truth file or a recorded
 /// IMU with its truth) and world. A truth's trajectory is moved, and turned by a quarter where that
 /// fits better, into the middle of the world's flight space; where options.world_scale is 0 the
@@ -41,6 +45,13 @@ struct Scenario {
 /// The same along a given motion, which is not moved; without textures.
 [[nodiscard]] Scenario MakeScenario(const SimulationOptions& options,
                                     std::shared_ptr<const Trajectory> trajectory);
+
+/// The stamps of the frames. Throws InputError where the motion is too short for one.
+[[nodiscard]] std::vector<Timestamp> FrameStamps(const Scenario& scenario,
+                                                 const SimulationOptions& options);
+
+/// InputError where a camera is inside something or outside of the world at a stamp.
+void CheckIsFree(const Scenario& scenario, Timestamp stamp);
 
 /// Simulate(options) in a scenario that was made from them.
 [[nodiscard]] SimulatedRecording SimulateIn(const Scenario& scenario,

@@ -62,26 +62,6 @@ RigCalibration DrawToldRig(const SimulationOptions& options, const RigCalibratio
   return BoxPlus(true_rig, layout, -error);
 }
 
-// A camera in a wall sees nothing of the world that it is in.
-void CheckIsFree(const Scenario& scenario, Timestamp stamp) {
-  // A camera has a size.
-  constexpr double kMargin_m = 0.02;
-  const double t_s = SecondsBetween(scenario.start, stamp);
-  const Pose T_GB = scenario.trajectory->At(t_s).T_GB;
-  for (const CameraCalibration& camera : scenario.true_rig.cameras) {
-    const Eigen::Vector3d p_GC = T_GB * Pose{camera.R_CB, camera.p_CB}.Inverse().p;
-    if (scenario.world->IsFree(p_GC, kMargin_m, t_s)) continue;
-    throw InputError("", 0, "trajectory",
-                     "at " + FormatNumber(std::round(1e3 * t_s) * 1e-3) +
-                         " s a camera is inside something or outside of the world " +
-                         scenario.world->name() + ", at (" +
-                         FormatNumber(std::round(100.0 * p_GC.x()) / 100.0) + ", " +
-                         FormatNumber(std::round(100.0 * p_GC.y()) / 100.0) + ", " +
-                         FormatNumber(std::round(100.0 * p_GC.z()) / 100.0) +
-                         ") m; expected a path through free space");
-  }
-}
-
 }  // namespace
 
 InertialState SimulatedRecording::TruthAt(Timestamp instant) const {
@@ -134,6 +114,43 @@ RigCalibration EurocLikeRig(int cameras) {
   return rig;
 }
 
+void CheckIsFree(const Scenario& scenario, Timestamp stamp) {
+  // A camera has a size.
+  constexpr double kMargin_m = 0.02;
+  const double t_s = SecondsBetween(scenario.start, stamp);
+  const Pose T_GB = scenario.trajectory->At(t_s).T_GB;
+  for (const CameraCalibration& camera : scenario.true_rig.cameras) {
+    const Eigen::Vector3d p_GC = T_GB * Pose{camera.R_CB, camera.p_CB}.Inverse().p;
+    if (scenario.world->IsFree(p_GC, kMargin_m, t_s)) continue;
+    throw InputError("", 0, "trajectory",
+                     "at " + FormatNumber(std::round(1e3 * t_s) * 1e-3) +
+                         " s a camera is inside something or outside of the world " +
+                         scenario.world->name() + ", at (" +
+                         FormatNumber(std::round(100.0 * p_GC.x()) / 100.0) + ", " +
+                         FormatNumber(std::round(100.0 * p_GC.y()) / 100.0) + ", " +
+                         FormatNumber(std::round(100.0 * p_GC.z()) / 100.0) +
+                         ") m; expected a path through free space");
+  }
+}
+
+std::vector<Timestamp> FrameStamps(const Scenario& scenario, const SimulationOptions& options) {
+  double frames_s = scenario.trajectory->duration_s() - 2.0 * kImuMargin_s;
+  if (options.duration_s > 0.0) frames_s = std::min(frames_s, options.duration_s);
+  if (frames_s < 0.0) {
+    throw InputError("", 0, "trajectory",
+                     "lasts " + FormatNumber(scenario.trajectory->duration_s()) +
+                         " s; expected at least " + FormatNumber(2.0 * kImuMargin_s) + " s");
+  }
+  // Frames fall on the IMU's stamps where the rates divide, as EuRoC's do.
+  const Timestamp first =
+      EvenStamp(scenario.start, static_cast<int>(std::lround(kImuMargin_s * scenario.imu_rate_hz)),
+                scenario.imu_rate_hz);
+  const int count = static_cast<int>(std::floor(frames_s * scenario.camera_rate_hz + 1e-6)) + 1;
+  std::vector<Timestamp> stamps;
+  for (int i = 0; i < count; ++i) stamps.push_back(EvenStamp(first, i, scenario.camera_rate_hz));
+  return stamps;
+}
+
 SimulatedRecording SimulateIn(const Scenario& scenario, const SimulationOptions& options) {
   SimulatedRecording recording;
   recording.trajectory = scenario.trajectory;
@@ -154,17 +171,7 @@ SimulatedRecording SimulateIn(const Scenario& scenario, const SimulationOptions&
   TrackSimulator tracks(
       options, MovingCamera(recording.true_rig, recording.trajectory, recording.start),
       *scenario.scene, Random(static_cast<std::uint64_t>(options.seed), kTrackStream));
-  double frames_s = recording.trajectory->duration_s() - 2.0 * kImuMargin_s;
-  if (options.duration_s > 0.0) frames_s = std::min(frames_s, options.duration_s);
-  // Frames fall on the IMU's stamps where the rates divide, as EuRoC's do.
-  const Timestamp first_frame =
-      EvenStamp(recording.start, static_cast<int>(std::lround(kImuMargin_s * scenario.imu_rate_hz)),
-                scenario.imu_rate_hz);
-  const int frame_count =
-      static_cast<int>(std::floor(frames_s * scenario.camera_rate_hz + 1e-6)) + 1;
-  recording.frames.reserve(static_cast<std::size_t>(std::max(frame_count, 0)));
-  for (int i = 0; i < frame_count; ++i) {
-    const Timestamp stamp = EvenStamp(first_frame, i, scenario.camera_rate_hz);
+  for (const Timestamp stamp : FrameStamps(scenario, options)) {
     if (scenario.world) CheckIsFree(scenario, stamp);
     recording.frames.push_back(tracks.Observe(stamp));
   }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/config/yaml_node.h"
 #include "common/support/numeric_text.h"
 #include "common/support/text_file.h"
 
@@ -64,7 +65,15 @@ std::string TruthYaml(const SimulatedRecording& simulated) {
   std::string text =
       "# What the simulator used. The sensor files beside say what an estimator is told.\n";
   text += "gravity_m_per_s2: " + FormatNumber(-simulated.g_G.z()) + "\n";
-  text += "label: \"" + simulated.label + "\"\n";
+  text += "label: " + QuotedYaml(simulated.label) + "\n";
+  text += "gyroscope_noise_density: " + FormatNumber(simulated.noise.gyroscope_density) + "\n";
+  text +=
+      "accelerometer_noise_density: " + FormatNumber(simulated.noise.accelerometer_density) + "\n";
+  text += "gyroscope_random_walk: " + FormatNumber(simulated.noise.gyroscope_random_walk) + "\n";
+  text += "accelerometer_random_walk: " + FormatNumber(simulated.noise.accelerometer_random_walk) +
+          "\n";
+  text += std::string("readout_by_columns: ") + (rig.readout_by_columns ? "true" : "false") + "\n";
+  text += "# of simulated tracks; images have what simulation.yaml says under render.photometry\n";
   text += "pixel_noise_sigma_px: " + FormatNumber(simulated.pixel_noise_px) + "\n";
   text += "time_offset_s: " + FormatNumber(rig.t_d_s) + "\n";
   text += "readout_time_s: " + FormatNumber(rig.t_r_s) + "\n";

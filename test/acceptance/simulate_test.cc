@@ -93,7 +93,7 @@ TEST_F(SimulateTest, ComparisonAndManifestSayWhatWasSimulated) {
   const ProgramResult compare = RunDuet({"compare", "--quiet", "--init", "groundtruth", "--dataset",
                                          folder_ / "flight", "--out", folder_ / "compare"});
   ASSERT_EQ(compare.status, 0) << compare.err;
-  EXPECT_THAT(compare.out, StartsWith("simulated: room_walk, world room"));
+  EXPECT_THAT(compare.out, StartsWith("flight: simulated: room_walk, world room"));
   const auto manifest = nlohmann::json::parse(ReadFile(folder_ / "compare/manifest.json"));
   EXPECT_EQ(manifest.at("dataset").at("label"), "simulated: room_walk, world room");
 }
@@ -187,7 +187,7 @@ TEST_F(SimulateTest, RecordedImuWithSyntheticVision) {
                "window.ate.position_m<0.1"});
   EXPECT_EQ(compare.status, 0) << compare.err << compare.out;
   EXPECT_THAT(compare.out,
-              StartsWith("real IMU, synthetic vision along V2_01_easy's truth, world room"));
+              StartsWith("real: real IMU, synthetic vision along V2_01_easy's truth, world room"));
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "experiments/simulation/simulator.h"
+
 namespace duet {
 namespace {
 
@@ -71,8 +73,9 @@ double GainControl::GainAt(int camera, Timestamp stamp) const {
       const double share = (i + 0.5) / kLooks;
       const Timestamp before = ToNanoseconds(2.0 * share * options_.auto_exposure_lag_s);
       const double weight = std::exp(-2.0 * share);
-      // Before the simulation's start it looked as it did then.
-      const Timestamp at = std::max(stamp - before, std::min(stamp, camera_->start()));
+      // Before the first frame it looked as it did then; the trajectory covers no more.
+      const Timestamp first = camera_->start() + ToNanoseconds(kImuMargin_s);
+      const Timestamp at = std::max(stamp - before, std::min(stamp, first));
       sum += weight * MeanLight(camera, at);
       weights += weight;
     }
