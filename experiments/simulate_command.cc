@@ -94,6 +94,7 @@ void RefuseIneffective(const ConfigSources& sources, const SimulationOptions& op
   };
   if (!options.sensors.empty()) refuse(from_sensors, "beside sensors, which tell it");
   if (!options.imu.empty()) refuse(from_imu, "beside imu: the recorded IMU is taken as it is");
+  if (options.imu.empty()) refuse({"imu_apply_time_shift", "imu_apply_rotation"}, "without imu");
   if (IsTrajectoryFile(options.trajectory)) refuse({"rest_s"}, "on a truth's trajectory");
   if (options.world == kBoxWorld) refuse({"world_scale", "moving_bodies"}, "in world box");
 }

@@ -225,7 +225,10 @@ bool IsTrajectoryFile(const std::string& trajectory) {
 
 Scenario MakeScenario(const SimulationOptions& options, bool textures) {
   if (!options.imu.empty()) {
-    return MakeScenario(options, LoadRecordedMotion(options.imu), textures);
+    RecordedMotionOptions motion_options;
+    motion_options.apply_time_shift = options.imu_apply_time_shift;
+    motion_options.apply_rotation = options.imu_apply_rotation;
+    return MakeScenario(options, LoadRecordedMotion(options.imu, motion_options), textures);
   }
   Scenario scenario;
   SetSensors(options, &scenario);

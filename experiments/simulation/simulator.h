@@ -25,6 +25,8 @@ inline constexpr double kImuMargin_s = 0.2;
 struct SimulationOptions {
   std::string trajectory = "room_walk";
   std::string imu;
+  bool imu_apply_time_shift = true;
+  bool imu_apply_rotation = false;
   std::string sensors;
   double duration_s = 30.0;
   double rest_s = 0.0;
@@ -140,6 +142,15 @@ void SimulationOptions::Visit(Visitor& v) {
   v.Field("imu", &imu,
           {.doc = "Folder of a recording whose IMU is taken as it is, with vision simulated along "
                   "its truth; empty: the IMU is simulated."});
+  v.Field(
+      "imu_apply_time_shift", &imu_apply_time_shift,
+      {.doc = "Of imu: the truth's stamps are put onto the IMU's clock by the shift found between "
+              "them."});
+  v.Field(
+      "imu_apply_rotation", &imu_apply_rotation,
+      {.doc = "Of imu: the truth's body is turned into the gyroscope's by the rotation found "
+              "between them. Where gyroscope and accelerometer are not aligned it takes from the "
+              "one what it gives to the other."});
   v.Field("sensors", &sensors,
           {.doc = "The rig and its noise: a file like configs/sensors/euroc_like.yaml or a "
                   "recording's folder; empty: EuRoC's numbers, with the keys below."});
