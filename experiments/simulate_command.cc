@@ -175,6 +175,9 @@ int RunSimulate(const CommandLine& line) {
   SimulatedDatasetOptions options = ReadOptions(line, &sources);
   options.quiet = FLAGS_quiet;
   if (line.Given("picture")) {
+    if (line.Given("seeds")) {
+      throw InputError("", 0, "--seeds", "has no effect beside --picture; expected --seed");
+    }
     WritePicture(options, FLAGS_picture, FLAGS_out);
     return kDone;
   }
