@@ -21,8 +21,8 @@ namespace duet {
 struct SharedOptions {
   double pixel_noise_px = 1.0;
   int max_tracks = 150;
-  double max_abs_t_d_s = 0.02;
-  double max_abs_t_r_s = 0.0;
+  double max_abs_t_d_s = 0.05;
+  double max_abs_t_r_s = 0.05;
   double max_imu_gap_s = 0.05;
   CalibrationPriors calibration;
   StandstillOptions standstill;

@@ -2,6 +2,9 @@
 
 #include <cstddef>
 
+#include "common/measurement/gauge.h"
+#include "common/support/input_error.h"
+
 namespace duet {
 namespace {
 
@@ -45,6 +48,8 @@ void Configuration::Read(ConfigSources* sources) {
   sources->Read("window", &backends.window);
   sources->Read("evaluation", &evaluation);
   sources->CheckAllKeysUsed();
+  const std::string gauge = GaugeError(shared.calibration);
+  if (!gauge.empty()) throw InputError("shared.calibration.imu_frame: " + gauge);
 }
 
 std::string DocumentedYaml(const std::vector<ResolvedValue>& values) {

@@ -1,15 +1,37 @@
 #include "experiments/session.h"
 
+#include <cmath>
 #include <utility>
 
+#include "common/measurement/told_errors.h"
 #include "common/support/input_error.h"
 #include "common/support/logging.h"
+#include "common/support/numeric_text.h"
 #include "experiments/common_flags.h"
 
 namespace duet {
+namespace {
+
+// The recording's calibration, made wrong where the configuration asks for it.
+RigCalibration ToldRig(const RigCalibration& rig, const SharedOptions& shared) {
+  const CalibrationPriors& priors = shared.calibration;
+  RigCalibration told = DrawToldRig(rig, priors.told_errors, priors.imu_frame,
+                                    static_cast<std::uint64_t>(priors.told_errors_seed));
+  told = AddToldOffset(told, priors.told_offset);
+  const auto check = [](const char* name, double value_s, double bound_s) {
+    if (std::abs(value_s) <= bound_s) return;
+    throw InputError("shared.max_abs_" + std::string(name) + "_s: is " + FormatNumber(bound_s) +
+                     "; expected at least the told " + name + ", " + FormatNumber(value_s) + " s");
+  };
+  if (priors.t_d.estimated) check("t_d", told.t_d_s, shared.max_abs_t_d_s);
+  if (priors.t_r.estimated) check("t_r", told.t_r_s, shared.max_abs_t_r_s);
+  return told;
+}
+
+}  // namespace
 
 EstimatorSetup Session::Setup() const {
-  return {.rig = recording.rig,
+  return {.rig = ToldRig(recording.rig, configuration.shared),
           .imu_noise = recording.imu_sensor.noise,
           .g_G = recording.g_G(),
           .shared = configuration.shared};

@@ -41,11 +41,14 @@ const std::string* ValueOf(const std::vector<ResolvedValue>& values, const std::
 }
 
 std::string EstimatedCalibration(const std::vector<ResolvedValue>& values) {
-  constexpr std::string_view prefix = "shared.calibration.estimate_";
+  constexpr std::string_view prefix = "shared.calibration.";
+  constexpr std::string_view suffix = ".state";
   std::string text;
   for (const ResolvedValue& value : values) {
-    if (value.key.rfind(prefix, 0) != 0 || value.value != "true") continue;
-    text += (text.empty() ? "" : " ") + value.key.substr(prefix.size());
+    if (!value.key.starts_with(prefix) || !value.key.ends_with(suffix)) continue;
+    if (value.value != "estimated") continue;
+    const std::size_t length = value.key.size() - prefix.size() - suffix.size();
+    text += (text.empty() ? "" : " ") + value.key.substr(prefix.size(), length);
   }
   return text.empty() ? "none" : text;
 }

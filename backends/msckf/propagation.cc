@@ -11,18 +11,12 @@ constexpr int kInertial = 15;
 void PropagateCovariance(const Transition& transition, const CalibrationLayout& layout,
                          Eigen::Ref<Eigen::MatrixXd> P, PropagationWorkspace* workspace) {
   // F = the rows of (theta, p, v); the T matrices come first in the calibration.
-  int width = kInertial;
-  for (const CalibrationLayout::Entry& entry : layout.entries()) {
-    if (IsImuBlock(entry.block)) width = kInertial + entry.offset + entry.size;
-  }
+  const std::vector<int>& imu_columns = layout.imu_columns();
+  const int width = kInertial + static_cast<int>(imu_columns.size());
   auto& F = workspace->F;
   F.setZero(kNav, width);
   F.leftCols<kInertial>() = transition.Phi.topRows<kNav>();
-  for (const CalibrationLayout::Entry& entry : layout.entries()) {
-    if (!IsImuBlock(entry.block)) continue;
-    F.middleCols<9>(kInertial + entry.offset) =
-        transition.Gamma.middleCols<9>(ImuBlockOffset(entry.block));
-  }
+  F.rightCols(width - kInertial) = transition.Gamma(Eigen::all, imu_columns);
 
   const auto n = P.rows();
   auto& F_P = workspace->F_P;

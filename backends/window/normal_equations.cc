@@ -53,19 +53,16 @@ void NormalEquations::AddImu(int i, int j, const Vector15d& r, const ImuFactorJa
   sum_.b.segment<15>(a).noalias() += J.J_i.transpose() * r;
   sum_.b.segment<15>(b).noalias() += J.J_j.transpose() * r;
 
-  for (const auto& e : layout_->entries()) {
-    if (!IsImuBlock(e.block)) continue;
-    const auto J_e = J.J_T.middleCols<9>(ImuBlockOffset(e.block));
-    const int c = calibration_ + e.offset;
-    H.block<15, 9>(a, c).noalias() += J.J_i.transpose() * J_e;
-    H.block<15, 9>(b, c).noalias() += J.J_j.transpose() * J_e;
-    sum_.b.segment<9>(c).noalias() += J_e.transpose() * r;
-    for (const auto& f : layout_->entries()) {
-      if (!IsImuBlock(f.block) || f.offset < e.offset) continue;
-      H.block<9, 9>(c, calibration_ + f.offset).noalias() +=
-          J_e.transpose() * J.J_T.middleCols<9>(ImuBlockOffset(f.block));
-    }
-  }
+  const std::vector<int>& imu_columns = layout_->imu_columns();
+  if (imu_columns.empty()) return;
+  const auto width = static_cast<Eigen::Index>(imu_columns.size());
+  const int c = calibration_;  // the T matrices come first
+  const Eigen::Matrix<double, 15, Eigen::Dynamic, Eigen::ColMajor, 15, 27> J_c =
+      J.J_T(Eigen::all, imu_columns);
+  H.block(a, c, 15, width).noalias() += J.J_i.transpose() * J_c;
+  H.block(b, c, 15, width).noalias() += J.J_j.transpose() * J_c;
+  H.block(c, c, width, width).noalias() += J_c.transpose() * J_c;
+  sum_.b.segment(c, width).noalias() += J_c.transpose() * r;
 }
 
 void NormalEquations::AddStandstill(int i, int j, const StandstillResidual& residual) {

@@ -9,10 +9,12 @@ namespace {
 using Map3 = Eigen::Map<Eigen::Vector3d>;
 using MapQuaternion = Eigen::Map<Eigen::Quaterniond>;  // x y z w
 
-Eigen::Matrix3d* ImuMatrix(CalibrationBlock block, ImuCalibration* imu) {
-  return block == CalibrationBlock::kTg   ? &imu->T_g
-         : block == CalibrationBlock::kTs ? &imu->T_s
-                                          : &imu->T_a;
+// A number of T_g, T_s or T_a, counted by rows.
+double& ImuNumber(CalibrationBlock block, int number, ImuCalibration* imu) {
+  Eigen::Matrix3d& T = block == CalibrationBlock::kTg   ? imu->T_g
+                       : block == CalibrationBlock::kTs ? imu->T_s
+                                                        : imu->T_a;
+  return T(number / 3, number % 3);
 }
 
 void PackBlock(const CalibrationLayout::Entry& e, const RigCalibration& rig, double* values) {
@@ -20,9 +22,11 @@ void PackBlock(const CalibrationLayout::Entry& e, const RigCalibration& rig, dou
   switch (e.block) {
     case CalibrationBlock::kTg:
     case CalibrationBlock::kTs:
-    case CalibrationBlock::kTa:
-      out = ToVector(rig.imu).segment<9>(ImuBlockOffset(e.block));
+    case CalibrationBlock::kTa: {
+      ImuCalibration imu = rig.imu;
+      for (int k = 0; k < e.size; ++k) out[k] = ImuNumber(e.block, e.number[k], &imu);
       return;
+    }
     case CalibrationBlock::kExtrinsicTranslation:
       out = rig.cameras[e.camera].p_CB;
       return;
@@ -45,13 +49,12 @@ void PackBlock(const CalibrationLayout::Entry& e, const RigCalibration& rig, dou
 }
 
 void UnpackBlock(const CalibrationLayout::Entry& e, double* values, RigCalibration* rig) {
-  using Matrix3dRows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   const Eigen::Map<const Eigen::VectorXd> in(values, e.size);
   switch (e.block) {
     case CalibrationBlock::kTg:
     case CalibrationBlock::kTs:
     case CalibrationBlock::kTa:
-      *ImuMatrix(e.block, &rig->imu) = Eigen::Map<const Matrix3dRows>(values);
+      for (int k = 0; k < e.size; ++k) ImuNumber(e.block, e.number[k], &rig->imu) = in[k];
       return;
     case CalibrationBlock::kExtrinsicTranslation:
       rig->cameras[e.camera].p_CB = in;

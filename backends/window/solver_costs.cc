@@ -230,7 +230,11 @@ bool ImuCost::Evaluate(double const* const* /*parameters*/, double* residuals,
         break;
       case Kind::kCalibration: {
         const auto& entry = context_->layout->entries()[block.index];
-        JacobianMap<15, 9>{jacobians[k]} = W * J.J_T.middleCols<9>(ImuBlockOffset(entry.block));
+        Eigen::Map<Eigen::Matrix<double, 15, Eigen::Dynamic, Eigen::RowMajor>> J_block(
+            jacobians[k], 15, entry.size);
+        for (int c = 0; c < entry.size; ++c) {
+          J_block.col(c) = W * J.J_T.col(context_->layout->imu_columns()[entry.offset + c]);
+        }
         break;
       }
       case Kind::kLandmark:

@@ -13,8 +13,8 @@ ReprojectionSetup MakeReprojectionSetup(const EstimatorSetup& setup) {
   ReprojectionSetup reprojection;
   reprojection.g_G = setup.g_G;
   reprojection.pixel_noise_px = setup.shared.pixel_noise_px;
-  reprojection.off_instant = setup.shared.calibration.estimate_t_d ||
-                             setup.shared.calibration.estimate_t_r || setup.rig.t_r_s != 0.0;
+  const CalibrationPriors& priors = setup.shared.calibration;
+  reprojection.off_instant = priors.t_d.estimated || priors.t_r.estimated || setup.rig.t_r_s != 0.0;
   return reprojection;
 }
 
@@ -26,7 +26,7 @@ WindowEstimator::WindowEstimator(const EstimatorSetup& setup, const WindowOption
       layout_(setup.shared.calibration, setup.rig),
       reprojection_(MakeReprojectionSetup(setup)),
       rig_(setup.rig),
-      rate_reach_s_(2.0 * setup.shared.max_abs_t_d_s + 0.5 * setup.shared.max_abs_t_r_s),
+      longest_rate_reach_s_(2.0 * setup.shared.max_abs_t_d_s + 0.5 * setup.shared.max_abs_t_r_s),
       standstill_(setup.shared.standstill),
       linearizer_(options_, reprojection_, setup_.shared.standstill, layout_),
       problem_(options_, reprojection_, setup_.shared.standstill, layout_) {
@@ -159,12 +159,30 @@ void WindowEstimator::AppendFrame(const TrackFrameSet& frames) {
   output_.features.lost = std::max(output_.features.lost, 0);
 }
 
+// How far from the frame's instant a pixel may have been taken, s: as the times stand, and as far
+// as the coming solve may move them (beyond, the outermost rates go on).
+double WindowEstimator::RateReach(const WindowFrame& frame) const {
+  constexpr double kMarginSigmas = 4.0;
+  constexpr double kLeastMarginSeconds = 1e-3;
+  const auto sigma = [&](CalibrationBlock block) {
+    const int offset = layout_.OffsetOf(block);
+    if (offset < 0) return 0.0;
+    const Eigen::Index i = kFrameSize + offset;
+    return output_.covariance.rows() > i ? std::sqrt(output_.covariance(i, i))
+                                         : layout_.PriorSigmas()[offset];
+  };
+  const double now_s = std::abs(rig_.t_d_s - frame.t_d_at_instant_s) + 0.5 * std::abs(rig_.t_r_s);
+  const double margin_s = kMarginSigmas * (sigma(CalibrationBlock::kTimeOffset) +
+                                           0.5 * sigma(CalibrationBlock::kReadoutTime));
+  return std::min(now_s + margin_s + kLeastMarginSeconds, longest_rate_reach_s_);
+}
+
 void WindowEstimator::TriangulateNew() {
   const StageTimer::Scope scope(timer_, "triangulate");
   linearizer_.SetWindow(frames_, rig_);
   if (reprojection_.off_instant) {
     for (WindowFrame& frame : frames_) {
-      frame.rates.Assign(imu_, frame.state.instant, rate_reach_s_, frame.state.biases, rig_.imu);
+      frame.rates.Assign(imu_, frame.state.instant, RateReach(frame), frame.state.biases, rig_.imu);
     }
   }
   TriangulationOptions triangulation;
@@ -347,7 +365,7 @@ void WindowEstimator::Slide() {
     table_.DropFrame(dropped_frame_, linearizer_.now());
     frames_.erase(frames_.begin() + dropped_frame_);
   }
-  imu_.DropBefore(frames_.front().state.instant - ToNanoseconds(rate_reach_s_));
+  imu_.DropBefore(frames_.front().state.instant - ToNanoseconds(longest_rate_reach_s_));
 }
 
 std::optional<NavState> WindowEstimator::PredictAt(Timestamp t) const {

@@ -63,6 +63,7 @@ class WindowEstimator final : public Estimator {
                     const ImuCalibration& calibration);
   void Reintegrate();
   void SelectLandmarks();
+  [[nodiscard]] double RateReach(const WindowFrame& frame) const;
   void MarginalizeOldest();
   void MarginalizeSecondNewest();
   void ComposeOverSecondNewest();
@@ -78,7 +79,7 @@ class WindowEstimator final : public Estimator {
   CalibrationLayout layout_;
   ReprojectionSetup reprojection_;
   RigCalibration rig_;  // the current estimate
-  double rate_reach_s_;
+  double longest_rate_reach_s_;
 
   std::optional<InitialCondition> initial_;
   ImuBuffer imu_;

@@ -1,9 +1,11 @@
 #include "common/measurement/calibration.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/geometry/so3.h"
 #include "common/imu/imu_delta.h"
+#include "common/measurement/gauge.h"
 #include "common/support/logging.h"
 
 namespace duet {
@@ -27,37 +29,41 @@ void ForEachBlock(const RigCalibration& rig, Function&& function) {
   function(CalibrationBlock::kReadoutTime, -1, 1);
 }
 
-struct Choice {
-  bool estimated;
-  double sigma;
-};
-
-Choice ChoiceOf(const CalibrationPriors& p, CalibrationBlock block) {
+const BlockPrior& PriorOf(const CalibrationPriors& p, CalibrationBlock block) {
   switch (block) {
     case CalibrationBlock::kTg:
-      return {p.estimate_T_g, p.sigma_T_g};
+      return p.T_g;
     case CalibrationBlock::kTs:
-      return {p.estimate_T_s, p.sigma_T_s};
+      return p.T_s;
     case CalibrationBlock::kTa:
-      return {p.estimate_T_a, p.sigma_T_a};
+      return p.T_a;
     case CalibrationBlock::kExtrinsicTranslation:
-      return {p.estimate_p_CB, p.sigma_p_CB_m};
+      return p.p_CB;
     case CalibrationBlock::kExtrinsicRotation:
-      return {p.estimate_R_CB, p.sigma_R_CB_rad};
+      return p.R_CB;
     case CalibrationBlock::kIntrinsics:
-      return {p.estimate_intrinsics, p.sigma_intrinsics_px};
+      return p.intrinsics;
     case CalibrationBlock::kDistortion:
-      return {p.estimate_distortion, p.sigma_distortion};
+      return p.distortion;
     case CalibrationBlock::kTimeOffset:
-      return {p.estimate_t_d, p.sigma_t_d_s};
+      return p.t_d;
     case CalibrationBlock::kReadoutTime:
-      return {p.estimate_t_r, p.sigma_t_r_s};
+      return p.t_r;
   }
   LOG(FATAL) << "unknown calibration block";
 }
 
-// Value of a block that is a plain vector (all but R_CB).
-Eigen::VectorXd VectorOf(const RigCalibration& rig, const CalibrationLayout::Entry& e) {
+// True where the gauge holds a number of a T matrix (by rows) at its told value.
+bool HeldByGauge(const CalibrationPriors& priors, CalibrationBlock block, int number) {
+  const bool held =
+      GaugeActs(priors) &&
+      ((block == CalibrationBlock::kTg && priors.imu_frame == ImuFrame::kGyroscope) ||
+       (block == CalibrationBlock::kTa && priors.imu_frame == ImuFrame::kAccelerometer));
+  return held && IsAboveDiagonal(number);
+}
+
+// All numbers of a block that is a plain vector (all but R_CB).
+Eigen::VectorXd NumbersOf(const RigCalibration& rig, const CalibrationLayout::Entry& e) {
   switch (e.block) {
     case CalibrationBlock::kTg:
     case CalibrationBlock::kTs:
@@ -68,7 +74,8 @@ Eigen::VectorXd VectorOf(const RigCalibration& rig, const CalibrationLayout::Ent
     case CalibrationBlock::kIntrinsics:
       return rig.cameras[e.camera].model.parameters().head<CameraModel::kPinholeParameters>();
     case CalibrationBlock::kDistortion:
-      return rig.cameras[e.camera].model.parameters().tail(e.size);
+      return rig.cameras[e.camera].model.parameters().segment(
+          CameraModel::kPinholeParameters, rig.cameras[e.camera].model.distortion_count());
     case CalibrationBlock::kTimeOffset:
       return Eigen::VectorXd::Constant(1, rig.t_d_s);
     case CalibrationBlock::kReadoutTime:
@@ -79,13 +86,21 @@ Eigen::VectorXd VectorOf(const RigCalibration& rig, const CalibrationLayout::Ent
   LOG(FATAL) << "a rotation is no vector";
 }
 
+// The components of such a block.
+Eigen::VectorXd VectorOf(const RigCalibration& rig, const CalibrationLayout::Entry& e) {
+  const Eigen::VectorXd numbers = NumbersOf(rig, e);
+  Eigen::VectorXd vector(e.size);
+  for (int k = 0; k < e.size; ++k) vector[k] = numbers[e.number[k]];
+  return vector;
+}
+
 void AddToBlock(const CalibrationLayout::Entry& e, const Eigen::VectorXd& d, RigCalibration* rig) {
   switch (e.block) {
     case CalibrationBlock::kTg:
     case CalibrationBlock::kTs:
     case CalibrationBlock::kTa: {
       Eigen::Matrix<double, 27, 1> vector = ToVector(rig->imu);
-      vector.segment<9>(ImuBlockOffset(e.block)) += d;
+      for (int k = 0; k < e.size; ++k) vector[ImuBlockOffset(e.block) + e.number[k]] += d[k];
       rig->imu = ImuCalibrationFromVector(vector);
       return;
     }
@@ -116,10 +131,12 @@ void AddToBlock(const CalibrationLayout::Entry& e, const Eigen::VectorXd& d, Rig
 }
 
 std::vector<std::string> NamesOf(const CalibrationLayout::Entry& e) {
-  const auto matrix = [](const std::string& name) {
+  const auto matrix = [&](const std::string& name) {
     std::vector<std::string> names;
-    for (int i = 1; i <= 3; ++i) {
-      for (int j = 1; j <= 3; ++j) names.push_back(name + std::to_string(10 * i + j));
+    for (int k = 0; k < e.size; ++k) {
+      const int row = e.number[k] / 3 + 1;
+      const int column = e.number[k] % 3 + 1;
+      names.push_back(name + std::to_string(10 * row + column));
     }
     return names;
   };
@@ -154,11 +171,24 @@ CalibrationLayout::CalibrationLayout(const CalibrationPriors& priors, const RigC
     : camera_count_(static_cast<int>(rig.cameras.size())) {
   offset_of_.assign(kBlockKinds * (camera_count_ + 1), -1);
   ForEachBlock(rig, [&](CalibrationBlock block, int camera, int size) {
-    const Choice choice = ChoiceOf(priors, block);
-    if (!choice.estimated) return;
-    entries_.push_back({block, camera, size_, size, choice.sigma});
+    const BlockPrior& prior = PriorOf(priors, block);
+    if (!prior.estimated || (camera >= 0 && !priors.Estimates(camera))) return;
+    Entry entry{.block = block, .camera = camera, .offset = size_};
+    for (int number = 0; number < size; ++number) {
+      if (HeldByGauge(priors, block, number)) continue;
+      double sigma = prior.sigma;
+      if (block == CalibrationBlock::kDistortion) {
+        const double told =
+            rig.cameras[camera].model.parameters()[CameraModel::kPinholeParameters + number];
+        sigma = std::hypot(sigma, priors.distortion.share * told);
+      }
+      if (IsImuBlock(block)) imu_columns_.push_back(ImuBlockOffset(block) + number);
+      entry.number[entry.size] = number;
+      entry.sigma[entry.size++] = sigma;
+    }
+    entries_.push_back(entry);
     offset_of_[static_cast<int>(block) * (camera_count_ + 1) + camera + 1] = size_;
-    size_ += size;
+    size_ += entry.size;
   });
 }
 
@@ -167,14 +197,11 @@ int CalibrationLayout::OffsetOf(CalibrationBlock block, int camera) const {
   return offset_of_[static_cast<int>(block) * (camera_count_ + 1) + camera + 1];
 }
 
-bool CalibrationLayout::EstimatesImu() const {
-  return std::any_of(entries_.begin(), entries_.end(),
-                     [](const Entry& entry) { return IsImuBlock(entry.block); });
-}
-
 Eigen::VectorXd CalibrationLayout::PriorSigmas() const {
   Eigen::VectorXd sigmas(size_);
-  for (const Entry& e : entries_) sigmas.segment(e.offset, e.size).setConstant(e.sigma);
+  for (const Entry& e : entries_) {
+    for (int k = 0; k < e.size; ++k) sigmas[e.offset + k] = e.sigma[k];
+  }
   return sigmas;
 }
 

@@ -2,11 +2,13 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <string>
 #include <vector>
 
 #include "common/camera/camera_model.h"
 #include "common/imu/imu_model.h"
+#include "common/measurement/calibration_options.h"
 
 namespace duet {
 
@@ -49,71 +51,18 @@ enum class CalibrationBlock {
   return block == CalibrationBlock::kTg ? 0 : block == CalibrationBlock::kTs ? 9 : 18;
 }
 
-/// Which blocks an estimator estimates and how well they are known before (1 sigma).
-struct CalibrationPriors {
-  /// A block is estimated where its flag is set, else fixed at its told value.
-  bool estimate_T_g = false;
-  bool estimate_T_s = false;
-  bool estimate_T_a = false;
-  bool estimate_p_CB = false;
-  bool estimate_R_CB = false;
-  bool estimate_intrinsics = false;
-  bool estimate_distortion = false;
-  bool estimate_t_d = false;
-  bool estimate_t_r = false;
-  double sigma_T_g = 0.01;
-  double sigma_T_s = 1e-3;  ///< rad/s per m/s^2
-  double sigma_T_a = 0.01;
-  double sigma_p_CB_m = 0.02;
-  double sigma_R_CB_rad = 0.0175;
-  double sigma_intrinsics_px = 5.0;
-  double sigma_distortion = 0.01;
-  double sigma_t_d_s = 0.01;
-  double sigma_t_r_s = 0.02;
-
-  template <class Visitor>
-  void Visit(Visitor& v) {
-    v.Field("estimate_T_g", &estimate_T_g,
-            {.doc = "Estimate T_g (gyroscope scale and misalignment)."});
-    v.Field("estimate_T_s", &estimate_T_s, {.doc = "Estimate T_s (g-sensitivity)."});
-    v.Field("estimate_T_a", &estimate_T_a,
-            {.doc = "Estimate T_a (accelerometer scale and misalignment)."});
-    v.Field("estimate_p_CB", &estimate_p_CB, {.doc = "Estimate p_CB of each camera."});
-    v.Field("estimate_R_CB", &estimate_R_CB, {.doc = "Estimate R_CB of each camera."});
-    v.Field("estimate_intrinsics", &estimate_intrinsics,
-            {.doc = "Estimate fx fy ox oy of each camera."});
-    v.Field("estimate_distortion", &estimate_distortion,
-            {.doc = "Estimate the distortion of each camera."});
-    v.Field("estimate_t_d", &estimate_t_d, {.doc = "Estimate t_d, one for the rig."});
-    v.Field("estimate_t_r", &estimate_t_r, {.doc = "Estimate t_r, one for the rig."});
-    v.Field("sigma_T_g", &sigma_T_g,
-            {.doc = "Prior of each number of T_g.", .unit = "1", .min = 0});
-    v.Field("sigma_T_s", &sigma_T_s,
-            {.doc = "Prior of each number of T_s.", .unit = "rad/s per m/s^2", .min = 0});
-    v.Field("sigma_T_a", &sigma_T_a,
-            {.doc = "Prior of each number of T_a.", .unit = "1", .min = 0});
-    v.Field("sigma_p_CB_m", &sigma_p_CB_m,
-            {.doc = "Prior of p_CB, per axis.", .unit = "m", .min = 0});
-    v.Field("sigma_R_CB_rad", &sigma_R_CB_rad,
-            {.doc = "Prior of R_CB, per axis.", .unit = "rad", .min = 0});
-    v.Field("sigma_intrinsics_px", &sigma_intrinsics_px,
-            {.doc = "Prior of fx fy ox oy.", .unit = "px", .min = 0});
-    v.Field("sigma_distortion", &sigma_distortion,
-            {.doc = "Prior of each distortion number.", .unit = "1", .min = 0});
-    v.Field("sigma_t_d_s", &sigma_t_d_s, {.doc = "Prior of t_d.", .unit = "s", .min = 0});
-    v.Field("sigma_t_r_s", &sigma_t_r_s, {.doc = "Prior of t_r.", .unit = "s", .min = 0});
-  }
-};
-
 /// The estimated part of the calibration as one error vector.
 class CalibrationLayout {
  public:
+  static constexpr int kMaxBlockSize = 9;
   struct Entry {
     CalibrationBlock block;
-    int camera;  ///< index into RigCalibration::cameras; -1 for blocks of the rig or the IMU
-    int offset;  ///< first component in the error vector
-    int size;
-    double sigma;
+    int camera;    ///< index into RigCalibration::cameras; -1 for blocks of the rig or the IMU
+    int offset;    ///< first component in the error vector
+    int size = 0;  ///< components; fewer than the block's numbers where the gauge holds some
+    /// Which of the block's numbers the components are, ascending, and their priors.
+    std::array<int, kMaxBlockSize> number{};
+    std::array<double, kMaxBlockSize> sigma{};
   };
 
   CalibrationLayout() = default;
@@ -125,7 +74,10 @@ class CalibrationLayout {
   /// times.
   [[nodiscard]] int OffsetOf(CalibrationBlock block, int camera = -1) const;
   /// True where a T matrix is estimated: an IMU delta then needs its Jacobians to them.
-  [[nodiscard]] bool EstimatesImu() const;
+  [[nodiscard]] bool EstimatesImu() const { return !imu_columns_.empty(); }
+  /// The T matrices' components, which come first, as indices of the 27 numbers: columns of Gamma
+  /// or of J_T.
+  [[nodiscard]] const std::vector<int>& imu_columns() const { return imu_columns_; }
   /// The prior's standard deviations, one a component.
   [[nodiscard]] Eigen::VectorXd PriorSigmas() const;
   /// "cam0.p_CB.x", "t_d", ...: names for files, one a component.
@@ -134,6 +86,7 @@ class CalibrationLayout {
  private:
   std::vector<Entry> entries_;
   std::vector<int> offset_of_;  // block-major lookup
+  std::vector<int> imu_columns_;
   int camera_count_ = 0;
   int size_ = 0;
 };

@@ -10,6 +10,8 @@
 
 #include "common/geometry/angle.h"
 #include "common/geometry/so3.h"
+#include "common/measurement/gauge.h"
+#include "common/measurement/told_errors.h"
 #include "evaluation/errors.h"
 #include "evaluation/statistics.h"
 
@@ -19,20 +21,13 @@ namespace {
 // Apart from the recording's own random sequences (simulator.cc).
 constexpr std::uint64_t kStartStream = 11;
 
-CalibrationPriors ScaledPriors(CalibrationPriors priors, double scale) {
-  for (double* sigma : {&priors.sigma_T_g, &priors.sigma_T_s, &priors.sigma_T_a,
-                        &priors.sigma_p_CB_m, &priors.sigma_R_CB_rad, &priors.sigma_intrinsics_px,
-                        &priors.sigma_distortion, &priors.sigma_t_d_s, &priors.sigma_t_r_s}) {
-    *sigma *= scale;
-  }
-  return priors;
-}
-
 // Collects what one run's outputs say against the truth.
 class RunStatistics {
  public:
-  RunStatistics(const SimulatedRecording& recording, double settle_s, MonteCarloRun* run)
-      : recording_(recording), settle_s_(settle_s), run_(*run) {}
+  // The truth is taken in the axes that the estimator's gauge ties the body to.
+  RunStatistics(const SimulatedRecording& recording, const Eigen::Quaterniond& gauge,
+                double settle_s, MonteCarloRun* run)
+      : recording_(recording), gauge_(gauge), settle_s_(settle_s), run_(*run) {}
 
   void Add(const EstimatorOutput& output) {
     ++run_.frames;
@@ -42,7 +37,7 @@ class RunStatistics {
     if (output.status == EstimatorStatus::kInitializing) return;
     if (first_ == 0) first_ = output.frame_timestamp;
     run_.coverage_s = SecondsBetween(first_, output.frame_timestamp);
-    const InertialState truth = recording_.TruthAt(output.state.instant);
+    const InertialState truth = Reoriented(recording_.TruthAt(output.state.instant), gauge_);
     run_.nees.samples.push_back(
         ComputeNees(output.frame_timestamp, truth, output.state, output.covariance));
     if (run_.coverage_s < settle_s_) return;
@@ -70,7 +65,8 @@ class RunStatistics {
     run_.ate_position_m = ate.position_m.rmse;
     run_.ate_orientation_deg = ate.orientation_deg.rmse;
     if (last != nullptr && layout.size() > 0) {
-      const Eigen::VectorXd error = BoxMinus(recording_.true_rig, last->rig, layout);
+      const Eigen::VectorXd error =
+          BoxMinus(Reoriented(recording_.true_rig, gauge_), last->rig, layout);
       const Eigen::MatrixXd covariance =
           last->covariance.block(15, 15, layout.size(), layout.size());
       run_.calibration_size = layout.size();
@@ -80,6 +76,7 @@ class RunStatistics {
 
  private:
   const SimulatedRecording& recording_;
+  Eigen::Quaterniond gauge_;
   double settle_s_;
   MonteCarloRun& run_;
   Timestamp first_ = 0;
@@ -114,7 +111,8 @@ MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,
   SimulationOptions simulation = options.simulation;
   simulation.seed = seed;
   simulation.noise_scale *= options.noise_scale;
-  simulation.told_errors = options.shared.calibration;
+  simulation.told_errors = ToldErrorsOfPriors(options.shared.calibration);
+  simulation.told_imu_frame = options.shared.calibration.imu_frame;
   const SimulatedRecording recording = Simulate(simulation);
   SharedOptions shared = options.shared;
   shared.calibration = ScaledPriors(shared.calibration, simulation.noise_scale);
@@ -124,13 +122,15 @@ MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,
   Random random(static_cast<std::uint64_t>(seed), kStartStream);
   const Timestamp first_instant =
       recording.frames.front().timestamp + ToNanoseconds(recording.told_rig.t_d_s);
-  estimator->Initialize(DrawInitialCondition(recording.TruthAt(first_instant),
+  const Eigen::Quaterniond gauge =
+      GaugeRotation(recording.true_rig, recording.told_rig, shared.calibration);
+  estimator->Initialize(DrawInitialCondition(Reoriented(recording.TruthAt(first_instant), gauge),
                                              StartCovariance(options.start, options.noise_scale),
                                              &random));
 
   MonteCarloRun run;
   run.seed = seed;
-  RunStatistics statistics(recording, options.settle_s, &run);
+  RunStatistics statistics(recording, gauge, options.settle_s, &run);
   const Timestamp horizon = ToNanoseconds(ImuHorizon(shared));
   const EstimatorOutput* output = nullptr;
   std::size_t next = 0;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/geometry/so3.h"
+#include "common/measurement/told_errors.h"
 #include "common/support/input_error.h"
 #include "common/support/logging.h"
 #include "common/support/numeric_text.h"
@@ -17,8 +18,8 @@ namespace duet {
 namespace {
 
 // Separate random sequences, so that e.g. another IMU rate leaves the tracks as they are.
-// (1, 11 and 12 are the IMU's.)
-enum RandomStream : std::uint64_t { kTrackStream = 2, kToldStream = 3 };
+// (1, 11 and 12 are the IMU's, those from 1000 on the told calibration's.)
+enum RandomStream : std::uint64_t { kTrackStream = 2 };
 
 Eigen::Vector3d ToVector3(const std::vector<double>& values, const char* key) {
   if (values.size() != 3) throw InputError("", 0, key, "expected three numbers");
@@ -51,15 +52,6 @@ void AddImu(const SimulationOptions& options, double rate_hz, SimulatedRecording
   recording->dropped_imu_samples = simulated.dropped;
   recording->clipped_gyroscope_samples = simulated.clipped_gyroscope;
   recording->clipped_accelerometer_samples = simulated.clipped_accelerometer;
-}
-
-RigCalibration DrawToldRig(const SimulationOptions& options, const RigCalibration& true_rig) {
-  const CalibrationLayout layout(options.told_errors, true_rig);
-  if (layout.size() == 0) return true_rig;
-  Random random(static_cast<std::uint64_t>(options.seed), kToldStream);
-  Eigen::VectorXd error = random.NormalVector(layout.size());
-  error.array() *= options.noise_scale * layout.PriorSigmas().array();
-  return BoxPlus(true_rig, layout, -error);
 }
 
 }  // namespace
@@ -160,7 +152,9 @@ SimulatedRecording SimulateIn(const Scenario& scenario, const SimulationOptions&
   recording.noise = scenario.noise;
   recording.pixel_noise_px = options.noise_scale * options.pixel_noise_px;
   recording.true_rig = scenario.true_rig;
-  recording.told_rig = DrawToldRig(options, recording.true_rig);
+  recording.told_rig =
+      DrawToldRig(recording.true_rig, Scaled(options.told_errors, options.noise_scale),
+                  options.told_imu_frame, static_cast<std::uint64_t>(options.seed));
   if (scenario.recorded) {
     recording.imu = scenario.recorded->imu;
     recording.truth = scenario.recorded->states;

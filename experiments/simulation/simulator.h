@@ -67,9 +67,9 @@ struct SimulationOptions {
 
   /// The rig; EurocLikeRig(cameras) with t_d and t_r from above where it is not set.
   std::optional<RigCalibration> true_rig;
-  /// The told rig is the true one minus errors of these priors, on the blocks marked `estimate`;
-  /// their sigmas are multiplied by noise_scale.
-  CalibrationPriors told_errors;
+  /// The told rig is the true one minus drawn errors; their sigmas are multiplied by noise_scale.
+  ToldErrors told_errors;
+  ImuFrame told_imu_frame = ImuFrame::kFree;  ///< numbers that it holds are told right
 
   template <class Visitor>
   void Visit(Visitor& v);

@@ -14,8 +14,8 @@ using test::RandomCovariance;
 
 CalibrationPriors WithTimes() {
   CalibrationPriors priors;
-  priors.estimate_p_CB = true;
-  priors.estimate_t_d = true;
+  priors.p_CB.estimated = true;
+  priors.t_d.estimated = true;
   return priors;
 }
 

@@ -14,16 +14,16 @@ using test::kGravity;
 
 CalibrationPriors Everything() {
   CalibrationPriors priors;
-  priors.estimate_T_g = priors.estimate_T_s = priors.estimate_T_a = true;
-  priors.estimate_p_CB = priors.estimate_R_CB = true;
-  priors.estimate_intrinsics = priors.estimate_distortion = true;
-  priors.estimate_t_d = priors.estimate_t_r = true;
+  priors.T_g.estimated = priors.T_s.estimated = priors.T_a.estimated = true;
+  priors.p_CB.estimated = priors.R_CB.estimated = true;
+  priors.intrinsics.estimated = priors.distortion.estimated = true;
+  priors.t_d.estimated = priors.t_r.estimated = true;
   return priors;
 }
 
 CalibrationPriors PositionAndTime() {
   CalibrationPriors priors;
-  priors.estimate_p_CB = priors.estimate_t_d = true;
+  priors.p_CB.estimated = priors.t_d.estimated = true;
   return priors;
 }
 

@@ -88,8 +88,8 @@ TEST(Msckf, IsConsistentWithItsCovariance) {
 
 TEST(Msckf, CalibratesPositionOfTheCameraAndTimeOffset) {
   SharedOptions shared;
-  shared.calibration.estimate_p_CB = true;
-  shared.calibration.estimate_t_d = true;
+  shared.calibration.p_CB.estimated = true;
+  shared.calibration.t_d.estimated = true;
   SimulationOptions options = SimulationPreset("excited");
   options.duration_s = 15.0;
   options.t_d_s = 0.004;

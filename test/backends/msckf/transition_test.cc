@@ -132,11 +132,11 @@ TEST(Propagation, EqualsTheDenseProduct) {
   for (const Case& c : {Case{false, false, false}, Case{true, true, true}, Case{false, true, false},
                         Case{true, false, true}}) {
     CalibrationPriors priors;
-    priors.estimate_T_g = c.T_g;
-    priors.estimate_T_s = c.T_s;
-    priors.estimate_T_a = c.T_a;
-    priors.estimate_p_CB = true;
-    priors.estimate_t_d = true;
+    priors.T_g.estimated = c.T_g;
+    priors.T_s.estimated = c.T_s;
+    priors.T_a.estimated = c.T_a;
+    priors.p_CB.estimated = true;
+    priors.t_d.estimated = true;
     const CalibrationLayout layout(priors, rig);
     const int n = 15 + layout.size() + 18;
     Eigen::MatrixXd F = Eigen::MatrixXd::Identity(n, n);

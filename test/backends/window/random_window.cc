@@ -57,10 +57,10 @@ ImuNoise EurocNoise() { return {1.7e-4, 2e-3, 2e-5, 3e-3}; }
 
 CalibrationPriors EverythingEstimated() {
   CalibrationPriors priors;
-  priors.estimate_T_g = priors.estimate_T_s = priors.estimate_T_a = true;
-  priors.estimate_p_CB = priors.estimate_R_CB = true;
-  priors.estimate_intrinsics = priors.estimate_distortion = true;
-  priors.estimate_t_d = priors.estimate_t_r = true;
+  priors.T_g.estimated = priors.T_s.estimated = priors.T_a.estimated = true;
+  priors.p_CB.estimated = priors.R_CB.estimated = true;
+  priors.intrinsics.estimated = priors.distortion.estimated = true;
+  priors.t_d.estimated = priors.t_r.estimated = true;
   return priors;
 }
 

@@ -91,7 +91,7 @@ TEST(WindowEstimator, TracksWithinItsOwnCovariance) {
 
 TEST(WindowEstimator, SameInputSameBytes) {
   Flight run = Easy(1.0, 2);
-  run.shared.calibration.estimate_p_CB = run.shared.calibration.estimate_t_d = true;
+  run.shared.calibration.p_CB.estimated = run.shared.calibration.t_d.estimated = true;
   std::vector<double> bytes[2];
   for (std::vector<double>& b : bytes) {
     run.Go([&](const WindowEstimator&, const EstimatorOutput& output) {
@@ -285,9 +285,9 @@ TEST(WindowEstimator, PredictsBetweenFramesByTheImu) {
 
 TEST(WindowEstimator, FindsTimeOffsetAndCameraPosition) {
   CalibrationPriors calibration;
-  calibration.estimate_p_CB = calibration.estimate_t_d = true;
-  calibration.sigma_p_CB_m = 0.02;
-  calibration.sigma_t_d_s = 0.005;
+  calibration.p_CB.estimated = calibration.t_d.estimated = true;
+  calibration.p_CB.sigma = 0.02;
+  calibration.t_d.sigma = 0.005;
   Flight run = Easy(5.0, 1, "excited", calibration);
   run.shared.max_abs_t_d_s = 0.02;
   Eigen::VectorXd error;

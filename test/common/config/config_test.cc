@@ -249,14 +249,15 @@ TEST(Config, AMissingKeyWithoutDefaultIsRefused) {
 
 TEST(Config, TheOptionsOfTheMeasurementModelReadAndDump) {
   ConfigSources sources;
-  sources.AddText("shared:\n  calibration:\n    estimate_t_d: true\n", "f.yaml");
+  sources.AddText("shared:\n  calibration:\n    t_d: {state: estimated, sigma: 0.003}\n", "f.yaml");
   CalibrationPriors priors;
   sources.Read("shared.calibration", &priors);
   StandstillOptions standstill;
   sources.Read("shared.standstill", &standstill);
   sources.CheckAllKeysUsed();
-  EXPECT_TRUE(priors.estimate_t_d);
-  EXPECT_FALSE(priors.estimate_t_r);
+  EXPECT_TRUE(priors.t_d.estimated);
+  EXPECT_EQ(priors.t_d.sigma, 0.003);
+  EXPECT_FALSE(priors.t_r.estimated);
   for (const ResolvedValue& value : sources.values()) EXPECT_FALSE(value.doc.empty()) << value.key;
 }
 

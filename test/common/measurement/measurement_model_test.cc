@@ -258,8 +258,8 @@ TEST(CalibrationLayout, KeepsTheOrderOfTheCalibrationVector) {
   Random random(8);
   const RigCalibration rig = StereoRig(&random);
   CalibrationPriors priors;
-  priors.estimate_T_s = priors.estimate_p_CB = priors.estimate_distortion = true;
-  priors.estimate_R_CB = priors.estimate_t_d = true;
+  priors.T_s.estimated = priors.p_CB.estimated = priors.distortion.estimated = true;
+  priors.R_CB.estimated = priors.t_d.estimated = true;
   const CalibrationLayout layout(priors, rig);
   EXPECT_EQ(layout.size(), 9 + (3 + 3 + 5) + (3 + 3 + 4) + 1);
   EXPECT_EQ(layout.OffsetOf(CalibrationBlock::kTs), 0);

@@ -328,12 +328,12 @@ TEST(Simulator, WeakTracksEndEarly) {
   EXPECT_NEAR(static_cast<double>(whole) / begun, 0.502, 0.045);
 }
 
-TEST(Simulator, ToldRigIsOffByThePriors) {
+TEST(Simulator, ToldRigIsOffByTheToldErrors) {
   SimulationOptions options = ShortRun();
   options.duration_s = 0.5;
-  options.told_errors.estimate_p_CB = true;
-  options.told_errors.estimate_R_CB = true;
-  options.told_errors.estimate_t_d = true;
+  options.told_errors.p_CB_m = 0.02;
+  options.told_errors.R_CB_rad = 0.0175;
+  options.told_errors.t_d_s = 0.01;
   double sum = 0.0;
   constexpr int kSeeds = 100;
   for (int seed = 1; seed <= kSeeds; ++seed) {

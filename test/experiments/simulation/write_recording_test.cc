@@ -15,8 +15,8 @@ TEST(WriteSimulatedRecording, ReadsBackAsItWas) {
   options.cameras = 2;
   options.t_d_s = 0.004;
   options.t_r_s = 0.012;
-  options.told_errors.estimate_p_CB = true;
-  options.told_errors.estimate_T_g = true;
+  options.told_errors.p_CB_m = 0.02;
+  options.told_errors.T_g = 0.01;
   const SimulatedRecording simulated = Simulate(options);
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / "duet_write_simulated_recording";
