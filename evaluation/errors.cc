@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "common/geometry/angle.h"
 #include "common/geometry/so3.h"
 
 namespace duet {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 std::optional<Eigen::Quaterniond> FitOrientations(const std::vector<PosePair>& pairs,
                                                   AlignmentMode mode,
@@ -47,9 +45,9 @@ void ComputeOrientationErrors(const std::vector<PosePair>& pairs, AbsoluteErrors
     for (const PosePair& pair : pairs) {
       const Eigen::Quaterniond E =
           pair.T_GB_true.R * (*errors->orientation_R_GE * pair.T_EB.R).conjugate();
-      errors->orientation_series_deg.push_back(Log(E).norm() * kDegPerRad);
-      errors->yaw_series_deg.push_back(std::abs(YawOf(E)) * kDegPerRad);
-      errors->tilt_series_deg.push_back(TiltOf(E) * kDegPerRad);
+      errors->orientation_series_deg.push_back(Log(E).norm() * kDegreesPerRadian);
+      errors->yaw_series_deg.push_back(std::abs(YawOf(E)) * kDegreesPerRadian);
+      errors->tilt_series_deg.push_back(TiltOf(E) * kDegreesPerRadian);
     }
     errors->orientation_deg = Summarize(errors->orientation_series_deg);
     errors->yaw_deg = Summarize(errors->yaw_series_deg);
@@ -59,7 +57,7 @@ void ComputeOrientationErrors(const std::vector<PosePair>& pairs, AbsoluteErrors
     std::vector<double> angles_deg;
     for (const PosePair& pair : pairs) {
       const Eigen::Quaterniond R_GB = errors->alignment.alignment->R_GE * pair.T_EB.R;
-      angles_deg.push_back(BoxMinus(pair.T_GB_true.R, R_GB).norm() * kDegPerRad);
+      angles_deg.push_back(BoxMinus(pair.T_GB_true.R, R_GB).norm() * kDegreesPerRadian);
     }
     errors->orientation_by_positions_deg = Summarize(std::move(angles_deg));
   }
@@ -82,7 +80,7 @@ std::optional<Drift> DriftFromFirstPose(const std::vector<Pose>& poses) {
   Drift drift;
   for (const Pose& pose : poses) {
     drift.position_end_m = (pose.p - poses.front().p).norm();
-    drift.orientation_end_deg = BoxMinus(pose.R, poses.front().R).norm() * kDegPerRad;
+    drift.orientation_end_deg = BoxMinus(pose.R, poses.front().R).norm() * kDegreesPerRadian;
     drift.position_max_m = std::max(drift.position_max_m, drift.position_end_m);
     drift.orientation_max_deg = std::max(drift.orientation_max_deg, drift.orientation_end_deg);
   }

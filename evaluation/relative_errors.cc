@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
+#include "common/geometry/angle.h"
 #include "common/geometry/so3.h"
 #include "common/support/logging.h"
 #include "evaluation/alignment.h"
@@ -13,7 +13,6 @@
 namespace duet {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr std::size_t kAutomaticLengths = 4;
 
 struct Segment {
@@ -66,9 +65,9 @@ void AddSegment(const Segment& segment, const TravelledDistance& way, SegmentSam
   const Eigen::Quaterniond rotation = E_e * E_s.conjugate();
   samples->translation_m.push_back(error_m);
   if (way_m > 0.0) samples->translation_percent.push_back(100.0 * error_m / way_m);
-  samples->rotation_deg.push_back(Log(rotation).norm() * kDegPerRad);
-  samples->yaw_deg.push_back(std::abs(YawOf(rotation)) * kDegPerRad);
-  samples->tilt_deg.push_back(TiltOf(rotation) * kDegPerRad);
+  samples->rotation_deg.push_back(Log(rotation).norm() * kDegreesPerRadian);
+  samples->yaw_deg.push_back(std::abs(YawOf(rotation)) * kDegreesPerRadian);
+  samples->tilt_deg.push_back(TiltOf(rotation) * kDegreesPerRadian);
 }
 
 RelativeErrors SummarizeSegments(double length_m, SegmentSamples samples) {

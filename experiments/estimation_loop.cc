@@ -2,31 +2,10 @@
 
 #include "common/support/logging.h"
 #include "common/support/stage_timer.h"
+#include "experiments/imu_feed.h"
 #include "experiments/interrupt.h"
 
 namespace duet {
-namespace {
-
-/// Hands over the IMU up to an instant and the one sample after it.
-class ImuFeed {
- public:
-  explicit ImuFeed(const std::vector<ImuSample>& samples) : samples_(samples) {}
-
-  void Advance(Timestamp until, Estimator* estimator) {
-    while (next_ < samples_.size() && !Reached(until)) estimator->AddImu(samples_[next_++]);
-  }
-
- private:
-  [[nodiscard]] bool Reached(Timestamp until) const {
-    return next_ > 0 && samples_[next_ - 1].timestamp >= until;
-  }
-
-  const std::vector<ImuSample>& samples_;
-  std::size_t next_ = 0;
-};
-
-}  // namespace
-
 LoopOutcome RunEstimationLoop(const LoopParts& parts) {
   auto& [frames, imu, imu_horizon_s, start, estimator, recorder, timing, progress] = parts;
   StageTimer stages;  // the estimator's own

@@ -19,7 +19,7 @@ int Run(int argc, char** argv) {
   try {
     return Dispatch({CompareCommand(), TrackCommand(), RunCommand(), EvaluateCommand(),
                      CheckCommand(), SimulateCommand(), MonteCarloCommand(), TrackErrorCommand(),
-                     AllanCommand(), ConfigCommand()},
+                     AllanCommand(), AblateCommand(), ConfigCommand()},
                     argc, argv);
   } catch (const InputError& error) {
     return Fail(kBadInput, error.what());

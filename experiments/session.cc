@@ -12,38 +12,35 @@
 namespace duet {
 namespace {
 
-// The recording's calibration, made wrong where the configuration asks for it.
-RigCalibration ToldRig(const RigCalibration& rig, const SharedOptions& shared) {
-  const CalibrationPriors& priors = shared.calibration;
-  RigCalibration told = DrawToldRig(rig, priors.told_errors, priors.imu_frame,
-                                    static_cast<std::uint64_t>(priors.told_errors_seed));
-  told = AddToldOffset(told, priors.told_offset);
-  const auto check = [](const char* name, double value_s, double bound_s) {
+// The bounds that estimates stay within hold what they start from.
+void CheckBounds(const RigCalibration& told, const SharedOptions& shared) {
+  const auto check = [](const std::string& name, double value_s, double bound_s) {
     if (std::abs(value_s) <= bound_s) return;
-    throw InputError("shared.max_abs_" + std::string(name) + "_s: is " + FormatNumber(bound_s) +
+    throw InputError("shared.max_abs_" + name + "_s: is " + FormatNumber(bound_s) +
                      "; expected at least the told " + name + ", " + FormatNumber(value_s) + " s");
   };
-  if (priors.t_d.estimated) check("t_d", told.t_d_s, shared.max_abs_t_d_s);
-  if (priors.t_r.estimated) check("t_r", told.t_r_s, shared.max_abs_t_r_s);
-  return told;
+  if (shared.calibration.t_d.estimated) check("t_d", told.t_d_s, shared.max_abs_t_d_s);
+  if (shared.calibration.t_r.estimated) check("t_r", told.t_r_s, shared.max_abs_t_r_s);
 }
 
 }  // namespace
 
-EstimatorSetup Session::Setup() const {
-  return {.rig = ToldRig(recording.rig, configuration.shared),
-          .imu_noise = recording.imu_sensor.noise,
-          .g_G = recording.g_G(),
-          .shared = configuration.shared};
+EstimatorSetup Session::SetupWith(const SharedOptions& shared) const {
+  EstimatorSetup setup{.rig = ToldRig(recording.rig, shared.calibration),
+                       .imu_noise = recording.imu_sensor.noise,
+                       .g_G = recording.g_G(),
+                       .shared = shared};
+  CheckBounds(setup.rig, shared);
+  return setup;
 }
 
-EstimatorStart Session::Start() const {
+EstimatorStart Session::StartWith(const EstimatorSetup& setup) const {
   const StartMode mode = FLAGS_init == "groundtruth" ? StartMode::kGroundTruth : StartMode::kRest;
   if (mode == StartMode::kGroundTruth && !recording.truth) {
     throw InputError("--init groundtruth: " + recording.folder.string() +
                      " has no ground truth (state_groundtruth_estimate0/data.csv)");
   }
-  return {mode, Setup(), configuration.initialization,
+  return {mode, setup, configuration.initialization,
           mode == StartMode::kGroundTruth ? recording.truth->poses : std::vector<StampedPose>(),
           recording.imu};
 }

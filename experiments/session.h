@@ -18,9 +18,11 @@ struct Session {
   Recording recording;
 
   /// What estimators are told.
-  [[nodiscard]] EstimatorSetup Setup() const;
+  [[nodiscard]] EstimatorSetup Setup() const { return SetupWith(configuration.shared); }
+  [[nodiscard]] EstimatorSetup SetupWith(const SharedOptions& shared) const;
   /// By --init. Throws InputError for a start from a truth that the recording does not have.
-  [[nodiscard]] EstimatorStart Start() const;
+  [[nodiscard]] EstimatorStart Start() const { return StartWith(Setup()); }
+  [[nodiscard]] EstimatorStart StartWith(const EstimatorSetup& setup) const;
 };
 
 /// Reads configuration and recording. Tracks are taken from `tracks_folder` where it is not empty,

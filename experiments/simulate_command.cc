@@ -12,6 +12,7 @@
 #include "experiments/common_flags.h"
 #include "experiments/exit_status.h"
 #include "experiments/record_folder.h"
+#include "experiments/seed_range.h"
 #include "experiments/simulated_dataset.h"
 #include "experiments/simulation/euroc_sequences.h"
 #include "experiments/simulation/render/render_presets.h"
@@ -145,23 +146,6 @@ SimulatedDatasetOptions ReadOptions(const CommandLine& line, ConfigSources* sour
   options.images = FLAGS_images;
   options.tracks = !FLAGS_images || FLAGS_point_tracks;
   return options;
-}
-
-struct SeedRange {
-  int first;
-  int last;
-};
-
-SeedRange ParseSeeds(const std::string& text) {
-  const std::size_t dots = text.find("..");
-  SeedRange range{};
-  char end = 0;
-  if (dots == std::string::npos ||
-      std::sscanf(text.c_str(), "%d..%d%c", &range.first, &range.last, &end) != 2 ||
-      range.first < 0 || range.last < range.first) {
-    throw InputError("", 0, "--seeds", "expected A..B with 0 <= A <= B, got '" + text + "'");
-  }
-  return range;
 }
 
 int RunSimulate(const CommandLine& line) {

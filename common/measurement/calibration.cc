@@ -213,6 +213,13 @@ std::vector<std::string> CalibrationLayout::ComponentNames() const {
   return names;
 }
 
+std::string BlockName(const CalibrationLayout::Entry& entry) {
+  static constexpr std::array<const char*, kBlockKinds> kNames = {
+      "T_g", "T_s", "T_a", "p_CB", "R_CB", "intrinsics", "distortion", "t_d", "t_r"};
+  const char* name = kNames[static_cast<std::size_t>(entry.block)];
+  return entry.camera < 0 ? name : "cam" + std::to_string(entry.camera) + "." + name;
+}
+
 RigCalibration BoxPlus(const RigCalibration& rig, const CalibrationLayout& layout,
                        const Eigen::Ref<const Eigen::VectorXd>& error) {
   CHECK_EQ(error.size(), layout.size());

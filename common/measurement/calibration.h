@@ -91,6 +91,10 @@ class CalibrationLayout {
   int size_ = 0;
 };
 
+/// "T_g", "cam0.p_CB", "t_d", ...: the block's name for tables; without the camera as in the
+/// configuration.
+[[nodiscard]] std::string BlockName(const CalibrationLayout::Entry& entry);
+
 /// rig (+) error and a (-) b on the estimated components.
 [[nodiscard]] RigCalibration BoxPlus(const RigCalibration& rig, const CalibrationLayout& layout,
                                      const Eigen::Ref<const Eigen::VectorXd>& error);

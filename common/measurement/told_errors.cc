@@ -137,6 +137,12 @@ RigCalibration AddToldOffset(const RigCalibration& told_rig, const ToldOffset& o
   return BoxPlus(told_rig, layout, added);
 }
 
+RigCalibration ToldRig(const RigCalibration& rig, const CalibrationPriors& priors) {
+  const RigCalibration drawn = DrawToldRig(rig, priors.told_errors, priors.imu_frame,
+                                           static_cast<std::uint64_t>(priors.told_errors_seed));
+  return AddToldOffset(drawn, priors.told_offset);
+}
+
 ToldErrors ToldErrorsOfPriors(const CalibrationPriors& priors) {
   ToldErrors errors = priors.told_errors;
   const auto take = [](const BlockPrior& prior, double* sigma) {

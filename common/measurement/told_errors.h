@@ -19,6 +19,10 @@ namespace duet {
 [[nodiscard]] RigCalibration AddToldOffset(const RigCalibration& told_rig,
                                            const ToldOffset& offset);
 
+/// What an estimator is told of a recording with this calibration: with errors drawn and offsets
+/// added as `priors` say.
+[[nodiscard]] RigCalibration ToldRig(const RigCalibration& rig, const CalibrationPriors& priors);
+
 /// What the priors say of the estimated blocks, as errors to draw; the others as in
 /// `priors.told_errors`. For studies in which the told calibration is drawn from the priors.
 [[nodiscard]] ToldErrors ToldErrorsOfPriors(const CalibrationPriors& priors);

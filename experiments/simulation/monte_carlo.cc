@@ -2,18 +2,19 @@
 
 #include <glog/logging.h>
 
-#include <atomic>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
-#include <thread>
 
 #include "common/geometry/angle.h"
 #include "common/geometry/so3.h"
 #include "common/measurement/gauge.h"
 #include "common/measurement/told_errors.h"
+#include "common/support/stage_timer.h"
 #include "evaluation/errors.h"
 #include "evaluation/statistics.h"
+#include "experiments/imu_feed.h"
+#include "experiments/parallel_for.h"
 
 namespace duet {
 namespace {
@@ -37,6 +38,10 @@ class RunStatistics {
     if (output.status == EstimatorStatus::kInitializing) return;
     if (first_ == 0) first_ = output.frame_timestamp;
     run_.coverage_s = SecondsBetween(first_, output.frame_timestamp);
+    if (const int size = run_.calibration.layout().size(); size > 0) {
+      run_.calibration.Add(run_.coverage_s, output.rig,
+                           output.covariance.block(15, 15, size, size));
+    }
     const InertialState truth = Reoriented(recording_.TruthAt(output.state.instant), gauge_);
     run_.nees.samples.push_back(
         ComputeNees(output.frame_timestamp, truth, output.state, output.covariance));
@@ -48,7 +53,7 @@ class RunStatistics {
                       .T_EB = output.state.nav.pose()});
   }
 
-  void Finish(const EstimatorOutput* last, const CalibrationLayout& layout) {
+  void Finish() {
     run_.nees.start = first_;
     run_.nees.failed = run_.failed;
     const double count = static_cast<double>(pairs_.size());
@@ -64,14 +69,6 @@ class RunStatistics {
     const AbsoluteErrors ate = ComputeAbsoluteErrors(pairs_, AlignmentMode::kPositionYaw);
     run_.ate_position_m = ate.position_m.rmse;
     run_.ate_orientation_deg = ate.orientation_deg.rmse;
-    if (last != nullptr && layout.size() > 0) {
-      const Eigen::VectorXd error =
-          BoxMinus(Reoriented(recording_.true_rig, gauge_), last->rig, layout);
-      const Eigen::MatrixXd covariance =
-          last->covariance.block(15, 15, layout.size(), layout.size());
-      run_.calibration_size = layout.size();
-      run_.calibration_nees = Nees(error, covariance).value_or(std::nan(""));
-    }
   }
 
  private:
@@ -111,9 +108,12 @@ MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,
   SimulationOptions simulation = options.simulation;
   simulation.seed = seed;
   simulation.noise_scale *= options.noise_scale;
-  simulation.told_errors = ToldErrorsOfPriors(options.shared.calibration);
-  simulation.told_imu_frame = options.shared.calibration.imu_frame;
-  const SimulatedRecording recording = Simulate(simulation);
+  const CalibrationPriors& priors = options.shared.calibration;
+  simulation.told_errors =
+      options.told_from_priors ? ToldErrorsOfPriors(priors) : priors.told_errors;
+  simulation.told_imu_frame = priors.imu_frame;
+  SimulatedRecording recording = Simulate(simulation);
+  recording.told_rig = AddToldOffset(recording.told_rig, priors.told_offset);
   SharedOptions shared = options.shared;
   shared.calibration = ScaledPriors(shared.calibration, simulation.noise_scale);
   const EstimatorSetup setup = MakeSetup(recording, shared);
@@ -130,25 +130,28 @@ MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,
 
   MonteCarloRun run;
   run.seed = seed;
+  run.told_rig = recording.told_rig;
+  run.calibration = CalibrationErrors(estimator->layout(), Reoriented(recording.true_rig, gauge));
+  std::vector<double> frame_ms;
   RunStatistics statistics(recording, gauge, options.settle_s, &run);
   const Timestamp horizon = ToNanoseconds(ImuHorizon(shared));
-  const EstimatorOutput* output = nullptr;
-  std::size_t next = 0;
+  ImuFeed feed(recording.imu);
   for (const TrackFrameSet& frames : recording.frames) {
-    // Up to the horizon, and one sample more.
-    while (next < recording.imu.size() &&
-           (next == 0 || recording.imu[next - 1].timestamp < frames.timestamp + horizon)) {
-      estimator->AddImu(recording.imu[next++]);
-    }
-    output = &estimator->ProcessFrame(frames);
-    if (output->status == EstimatorStatus::kFailed) {
+    feed.Advance(frames.timestamp + horizon, estimator.get());
+    const double before_ms = ThreadCpuMs();
+    const EstimatorOutput& output = estimator->ProcessFrame(frames);
+    frame_ms.push_back(ThreadCpuMs() - before_ms);
+    if (output.status == EstimatorStatus::kFailed) {
       run.failed = true;
-      run.reason = output->reason;
+      run.reason = output.reason;
       break;
     }
-    statistics.Add(*output);
+    statistics.Add(output);
   }
-  statistics.Finish(run.failed ? nullptr : output, estimator->layout());
+  statistics.Finish();
+  const ErrorSummary cost = Summarize(frame_ms);
+  run.frame_ms_median = cost.median;
+  run.frame_ms_p99 = cost.p99;
   return run;
 }
 
@@ -156,22 +159,28 @@ MonteCarloResult RunMonteCarlo(const MonteCarloOptions& options,
                                const EstimatorMaker& make_estimator) {
   MonteCarloResult result;
   result.runs.resize(static_cast<std::size_t>(options.runs));
-  std::atomic<int> next{0};
-  const auto work = [&] {
-    for (int i = next++; i < options.runs; i = next++) {
-      result.runs[static_cast<std::size_t>(i)] =
-          RunOnce(options, options.simulation.seed + i, make_estimator);
-    }
-  };
-  std::vector<std::thread> threads;
-  for (int i = 1; i < options.threads; ++i) threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
-
-  std::vector<NeesRun> nees;
-  for (const MonteCarloRun& run : result.runs) nees.push_back(run.nees);
-  result.consistency = SummarizeConsistency(nees, {.settle_s = options.settle_s});
+  ParallelFor(options.runs, options.threads, [&](int i) {
+    result.runs[static_cast<std::size_t>(i)] =
+        RunOnce(options, options.simulation.seed + i, make_estimator);
+  });
+  result.consistency = SummarizeRuns(result.runs, options.settle_s);
   return result;
+}
+
+ConsistencyReport SummarizeRuns(std::span<const MonteCarloRun> runs, double settle_s) {
+  std::vector<NeesRun> nees;
+  for (const MonteCarloRun& run : runs) nees.push_back(run.nees);
+  return SummarizeConsistency(nees, {.settle_s = settle_s});
+}
+
+std::vector<CalibrationBlockSummary> SummarizeCalibrationOfRuns(
+    std::span<const MonteCarloRun> runs, const Eigen::VectorXd& predicted_sigma,
+    const std::vector<double>& further_p_values) {
+  std::vector<const CalibrationErrors*> calibration;
+  for (const MonteCarloRun& run : runs) {
+    if (!run.failed) calibration.push_back(&run.calibration);
+  }
+  return SummarizeCalibration(calibration, predicted_sigma, further_p_values);
 }
 
 const BlockConsistency& MonteCarloResult::Block(NeesBlock block) const {
@@ -202,9 +211,6 @@ std::string MonteCarloText(const std::string& title, const MonteCarloResult& res
   row("accel bias [m/s^2]", &MonteCarloRun::b_a_rms_m_per_s2);
   long used = 0;
   long gated = 0;
-  double calibration = 0.0;
-  int calibration_size = 0;
-  int completed = 0;
   for (const MonteCarloRun& run : result.runs) {
     used += run.used;
     gated += run.gated;
@@ -213,17 +219,12 @@ std::string MonteCarloText(const std::string& title, const MonteCarloResult& res
           Format("  seed %d FAILED after %.1f s: ", run.seed, run.coverage_s) + run.reason + "\n";
       continue;
     }
-    ++completed;
-    calibration += run.calibration_nees;
-    calibration_size = run.calibration_size;
   }
   text +=
       Format("  landmarks used %ld, gated %ld (%.1f %%)\n", used, gated,
              100.0 * static_cast<double>(gated) / static_cast<double>(std::max(1L, used + gated)));
-  if (calibration_size > 0 && completed > 0) {
-    text += Format("  calibration at the end: mean NEES %.2f of %d\n", calibration / completed,
-                   calibration_size);
-  }
+  const std::vector<CalibrationBlockSummary> calibration = SummarizeCalibrationOfRuns(result.runs);
+  if (!calibration.empty()) text += CalibrationText(calibration);
   return text;
 }
 

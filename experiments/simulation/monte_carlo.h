@@ -2,11 +2,13 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "backends/estimator.h"
 #include "backends/initialization/initialization.h"
+#include "evaluation/calibration_errors.h"
 #include "evaluation/consistency.h"
 #include "experiments/simulation/simulator.h"
 
@@ -19,9 +21,12 @@ using EstimatorMaker = std::function<std::unique_ptr<Estimator>(const EstimatorS
 /// start covariance, the told calibration from the priors of what is estimated: without that NEES
 /// means nothing (DESIGN.md section 5).
 struct MonteCarloOptions {
-  SimulationOptions simulation;  ///< `seed` is the first run's; told_errors come from `shared`
+  SimulationOptions simulation;  ///< `seed` is the first run's; told_errors are not read
   SharedOptions shared;          ///< with pixel noise from the simulation
   InitializationOptions start;   ///< 1 sigma of the first state
+  /// The told calibration's errors are drawn from the priors of what is estimated; false: as
+  /// shared.calibration.told_errors says.
+  bool told_from_priors = true;
   int runs = 20;
   int threads = 2;
   double settle_s = 2.0;
@@ -49,9 +54,11 @@ struct MonteCarloRun {
   double ate_orientation_deg = 0.0;
   long used = 0;  ///< sums of FeatureCounts
   long gated = 0;
-  /// error' covariance^-1 error of the estimated calibration at the last frame, and its size.
-  double calibration_nees = 0.0;
-  int calibration_size = 0;
+  CalibrationErrors calibration;  ///< of what is estimated; empty where nothing is
+  RigCalibration told_rig;
+  /// Thread CPU time of the estimator a frame; influences nothing and is not the same twice.
+  double frame_ms_median = 0.0;
+  double frame_ms_p99 = 0.0;
 };
 
 struct MonteCarloResult {
@@ -64,6 +71,14 @@ struct MonteCarloResult {
 /// The same result for any number of threads.
 [[nodiscard]] MonteCarloResult RunMonteCarlo(const MonteCarloOptions& options,
                                              const EstimatorMaker& make_estimator);
+
+/// NEES over runs with the same instants.
+[[nodiscard]] ConsistencyReport SummarizeRuns(std::span<const MonteCarloRun> runs, double settle_s);
+
+/// SummarizeCalibration of the runs that did not fail.
+[[nodiscard]] std::vector<CalibrationBlockSummary> SummarizeCalibrationOfRuns(
+    std::span<const MonteCarloRun> runs, const Eigen::VectorXd& predicted_sigma = {},
+    const std::vector<double>& further_p_values = {});
 
 /// One seed of it.
 [[nodiscard]] MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,

@@ -1,0 +1,179 @@
+#include "experiments/ablation/ablation_report.h"
+
+#include <cmath>
+
+#include "common/support/numeric_text.h"
+#include "evaluation/statistics.h"
+#include "evaluation/text_table.h"
+
+namespace duet {
+namespace {
+
+constexpr double kSettleSeconds = 2.0;
+
+/// What a cell's runs say together.
+struct CellSummary {
+  int failed = 0;
+  ErrorSummary position_m;
+  ErrorSummary orientation_deg;
+  ErrorSummary frame_ms;
+  double coverage_s = 0.0;  ///< the smallest
+  std::optional<BlockConsistency> pose;
+  std::vector<CalibrationBlockSummary> calibration;
+};
+
+CellSummary SummarizeCell(const AblationCell& cell, bool consistency,
+                          const PredictedSigma& predicted_sigma) {
+  CellSummary summary;
+  std::vector<double> position_m;
+  std::vector<double> orientation_deg;
+  std::vector<double> frame_ms;
+  bool first = true;
+  for (const MonteCarloRun& run : cell.runs) {
+    frame_ms.push_back(run.frame_ms_median);
+    summary.coverage_s = first ? run.coverage_s : std::min(summary.coverage_s, run.coverage_s);
+    first = false;
+    if (run.failed) {
+      ++summary.failed;
+      continue;
+    }
+    position_m.push_back(run.ate_position_m);
+    orientation_deg.push_back(run.ate_orientation_deg);
+  }
+  summary.position_m = Summarize(position_m);
+  summary.orientation_deg = Summarize(orientation_deg);
+  summary.frame_ms = Summarize(frame_ms);
+  std::vector<double> further_p_values;
+  if (consistency) {
+    for (const BlockConsistency& block : SummarizeRuns(cell.runs, kSettleSeconds).blocks) {
+      if (block.block != NeesBlock::kPose) continue;
+      summary.pose = block;
+      further_p_values.push_back(block.p_value);
+    }
+  }
+  summary.calibration =
+      SummarizeCalibrationOfRuns(cell.runs, predicted_sigma(cell.variant), further_p_values);
+  return summary;
+}
+
+nlohmann::ordered_json Spread(const ErrorSummary& errors) {
+  return {{"median", errors.median},
+          {"p25", errors.p25},
+          {"p75", errors.p75},
+          {"p95", errors.p95},
+          {"max", errors.max}};
+}
+
+}  // namespace
+
+std::string AblationText(const std::vector<AblationCell>& cells, bool consistency,
+                         const PredictedSigma& predicted_sigma) {
+  std::vector<std::string> header = {"estimated", "runs",      "failed",    "ATE [m]",
+                                     "p95 [m]",   "ATE [deg]", "p95 [deg]", "least covered [s]",
+                                     "frame [ms]"};
+  if (consistency) header.emplace_back("pose NEES (6)");
+  TextTable table(header);
+  std::string details;
+  const std::string* estimator = nullptr;
+  for (const AblationCell& cell : cells) {
+    const CellSummary summary = SummarizeCell(cell, consistency, predicted_sigma);
+    if (estimator == nullptr || *estimator != cell.estimator) table.AddSection(cell.estimator);
+    estimator = &cell.estimator;
+    std::vector<std::string> row = {cell.variant.name,
+                                    std::to_string(cell.runs.size()),
+                                    std::to_string(summary.failed),
+                                    Number(summary.position_m.median, 4),
+                                    Number(summary.position_m.p95, 4),
+                                    Number(summary.orientation_deg.median, 3),
+                                    Number(summary.orientation_deg.p95, 3),
+                                    Number(summary.coverage_s, 1),
+                                    Number(summary.frame_ms.median, 2)};
+    if (consistency) row.push_back(summary.pose ? Number(summary.pose->mean, 2) : "-");
+    table.AddRow(row);
+    if (!summary.calibration.empty()) {
+      details += "\n" + cell.estimator + ", estimated: " + cell.variant.name + "\n" +
+                 CalibrationText(summary.calibration);
+    }
+  }
+  return table.Text() + details;
+}
+
+nlohmann::ordered_json AblationJson(const std::vector<AblationCell>& cells, bool consistency,
+                                    const PredictedSigma& predicted_sigma) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const AblationCell& cell : cells) {
+    const CellSummary summary = SummarizeCell(cell, consistency, predicted_sigma);
+    nlohmann::ordered_json entry = {{"estimator", cell.estimator},
+                                    {"variant", cell.variant.name},
+                                    {"estimated", cell.variant.estimated},
+                                    {"runs", cell.runs.size()},
+                                    {"failed", summary.failed},
+                                    {"ate_position_m", Spread(summary.position_m)},
+                                    {"ate_orientation_deg", Spread(summary.orientation_deg)},
+                                    {"least_coverage_s", summary.coverage_s},
+                                    {"frame_ms", Spread(summary.frame_ms)}};
+    if (summary.pose) {
+      entry["pose_nees"] = {{"mean", summary.pose->mean},
+                            {"median_instant", summary.pose->median_instant},
+                            {"rejected", summary.pose->rejected}};
+    }
+    for (const CalibrationBlockSummary& block : summary.calibration) {
+      nlohmann::ordered_json row = {{"runs", block.runs},
+                                    {"dof", block.dof},
+                                    {"prior_sigma", block.prior_sigma},
+                                    {"rms_error", block.rms_error},
+                                    {"rms_reported_sigma", block.rms_sigma},
+                                    {"error_over_reported", block.error_over_sigma}};
+      if (block.error_over_predicted) row["error_over_predicted"] = *block.error_over_predicted;
+      row["mean_nees"] = block.mean_nees;
+      row["band_99"] = {block.band.low, block.band.high};
+      row["p_value"] = block.p_value;
+      row["rejected"] = block.rejected;
+      if (std::isfinite(block.convergence_s)) row["settled_s"] = block.convergence_s;
+      entry["calibration"][block.name] = row;
+    }
+    json.push_back(entry);
+  }
+  return json;
+}
+
+std::string AblationRunsCsv(const std::vector<AblationCell>& cells) {
+  std::string text =
+      "#estimator,estimated,seed,failed,coverage [s],ate position [m],ate orientation [deg],"
+      "calibration nees,calibration size,frame median [ms],frame p99 [ms]\n";
+  for (const AblationCell& cell : cells) {
+    for (const MonteCarloRun& run : cell.runs) {
+      text += cell.estimator + "," + cell.variant.name + "," + std::to_string(run.seed) + "," +
+              (run.failed ? "1" : "0");
+      for (const double value : {run.coverage_s, run.ate_position_m, run.ate_orientation_deg,
+                                 run.calibration.Nees().value_or(0.0)}) {
+        text += "," + FormatNumber(value);
+      }
+      text += "," + std::to_string(run.calibration.layout().size());
+      text += "," + FormatNumber(run.frame_ms_median) + "," + FormatNumber(run.frame_ms_p99) + "\n";
+    }
+  }
+  return text;
+}
+
+std::string AblationCurvesCsv(const std::vector<AblationCell>& cells) {
+  std::string text = "#estimator,estimated,seed,time [s],component,error,sigma\n";
+  for (const AblationCell& cell : cells) {
+    for (const MonteCarloRun& run : cell.runs) {
+      const std::vector<std::string> names = run.calibration.layout().ComponentNames();
+      const std::string head =
+          cell.estimator + "," + cell.variant.name + "," + std::to_string(run.seed) + ",";
+      for (const CalibrationSample& sample : run.calibration.samples()) {
+        const std::string row = head + FormatNumber(sample.t_s) + ",";
+        for (std::size_t i = 0; i < names.size(); ++i) {
+          const auto k = static_cast<Eigen::Index>(i);
+          text += row + names[i] + "," + FormatNumber(sample.error[k]) + "," +
+                  FormatNumber(sample.sigma[k]) + "\n";
+        }
+      }
+    }
+  }
+  return text;
+}
+
+}  // namespace duet

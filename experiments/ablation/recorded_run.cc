@@ -1,0 +1,113 @@
+#include "experiments/ablation/recorded_run.h"
+
+#include <cmath>
+
+#include "common/measurement/gauge.h"
+#include "common/support/stage_timer.h"
+#include "evaluation/association.h"
+#include "evaluation/errors.h"
+#include "evaluation/statistics.h"
+#include "experiments/imu_feed.h"
+#include "experiments/interrupt.h"
+#include "experiments/progress.h"
+
+namespace duet {
+namespace {
+
+void AddAccuracy(const Session& session, const Eigen::Quaterniond& gauge,
+                 const std::vector<StampedPose>& estimate, MonteCarloRun* run) {
+  std::vector<StampedPose> truth = session.recording.truth->poses;
+  for (StampedPose& pose : truth) pose.T_GB.R = (pose.T_GB.R * gauge.conjugate()).normalized();
+  const Association association = Associate(truth, estimate, {});
+  const std::vector<PosePair>& pairs = association.pairs;
+  if (pairs.size() < 3) {
+    run->failed = true;
+    run->reason = "fewer than three of its poses have a truth";
+    return;
+  }
+  const AbsoluteErrors errors = ComputeAbsoluteErrors(pairs, AlignmentMode::kPositionYaw);
+  run->ate_position_m = errors.position_m.rmse;
+  run->ate_orientation_deg = errors.orientation_deg.rmse;
+  run->coverage_s = association.coverage_s;
+}
+
+}  // namespace
+
+MonteCarloRun RunRecorded(const Session& session, const std::vector<TrackFrameSet>& frames,
+                          const std::string& estimator_name, const CalibrationPriors& priors) {
+  Configuration configuration = session.configuration;
+  configuration.shared.calibration = priors;
+  const EstimatorSetup setup = session.SetupWith(configuration.shared);
+  EstimatorStart start = session.StartWith(setup);
+  const std::unique_ptr<Estimator> estimator =
+      MakeEstimator(estimator_name, setup, configuration.backends);
+  const Eigen::Quaterniond gauge = GaugeRotation(session.recording.rig, setup.rig, priors);
+
+  MonteCarloRun run;
+  run.seed = priors.told_errors_seed;
+  run.told_rig = setup.rig;
+  run.calibration =
+      CalibrationErrors(estimator->layout(), Reoriented(session.recording.rig, gauge));
+  ImuFeed feed(session.recording.imu);
+  const Timestamp horizon = ToNanoseconds(ImuHorizon(configuration.shared));
+  std::vector<double> frame_ms;
+  std::vector<StampedPose> estimate;
+  bool started = false;
+  Timestamp first = 0;
+  for (const TrackFrameSet& frame : frames) {
+    feed.Advance(frame.timestamp + horizon, estimator.get());
+    if (!started) {
+      const std::optional<InitialCondition> initial = start.Try(frame);
+      if (!initial) continue;
+      estimator->Initialize(*initial);
+      started = true;
+      first = frame.timestamp;
+    }
+    const double before_ms = ThreadCpuMs();
+    const EstimatorOutput& output = estimator->ProcessFrame(frame);
+    frame_ms.push_back(ThreadCpuMs() - before_ms);
+    ++run.frames;
+    if (output.status == EstimatorStatus::kFailed) {
+      run.failed = true;
+      run.reason = output.reason;
+      break;
+    }
+    if (output.status == EstimatorStatus::kInitializing) continue;
+    if (output.status == EstimatorStatus::kDeadReckoning) ++run.dead_reckoned;
+    run.used += output.features.used;
+    run.gated += output.features.gated;
+    if (const int size = estimator->layout().size(); size > 0) {
+      run.calibration.Add(SecondsBetween(first, frame.timestamp), output.rig,
+                          output.covariance.block(15, 15, size, size));
+    }
+    if (estimate.empty() || output.state.instant > estimate.back().timestamp) {
+      estimate.push_back({output.state.instant, output.state.nav.pose()});
+    }
+  }
+  const ErrorSummary cost = Summarize(frame_ms);
+  run.frame_ms_median = cost.median;
+  run.frame_ms_p99 = cost.p99;
+  if (!started) {
+    run.failed = true;
+    run.reason = "did not start: " + start.reason();
+  }
+  if (!run.failed) AddAccuracy(session, gauge, estimate, &run);
+  return run;
+}
+
+std::vector<TrackFrameSet> TracksOf(const Session& session, bool quiet) {
+  if (session.recording.vision != Vision::kImages) return session.recording.tracks.frames;
+  std::vector<TrackFrameSet> frames;
+  const std::unique_ptr<LiveTracker> tracker = StartTracking(
+      session,
+      [&](const TrackFrameSet& tracks, const ImageSet& /*images*/) { frames.push_back(tracks); });
+  Progress progress("tracking", tracker->count(), "frames", quiet);
+  while (!Interrupted() && tracker->Next() != nullptr) {
+    progress.Update(static_cast<std::int64_t>(frames.size()));
+  }
+  progress.Finish();
+  if (Interrupted()) frames.clear();
+  return frames;
+}
+
+}  // namespace duet
