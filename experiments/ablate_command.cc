@@ -120,7 +120,8 @@ std::vector<AblationCell> RunPlan(const AblationPlan& plan, const AblationRunner
   return cells;
 }
 
-std::vector<AblationCell> OnSimulation(const CommandLine& line, ConfigSources* sources) {
+std::vector<AblationCell> OnSimulation(const CommandLine& line, ConfigSources* sources,
+                                       AblationPlan* plan) {
   for (const std::string& file : line.All("config")) sources->AddFile(file);
   for (const std::string& assignment : line.All("set")) sources->AddOverride(assignment);
   MonteCarloOptions options;
@@ -130,8 +131,8 @@ std::vector<AblationCell> OnSimulation(const CommandLine& line, ConfigSources* s
   configuration.Read(sources);
   options.shared = configuration.shared;
   options.start = configuration.initialization;
-  const AblationPlan plan = ReadPlan(configuration.shared);
-  return RunPlan(plan,
+  *plan = ReadPlan(configuration.shared);
+  return RunPlan(*plan,
                  [&](const std::string& estimator, const CalibrationPriors& priors, int seed) {
                    MonteCarloOptions of_run = options;
                    of_run.shared.calibration = priors;
@@ -142,19 +143,30 @@ std::vector<AblationCell> OnSimulation(const CommandLine& line, ConfigSources* s
                  });
 }
 
-std::vector<AblationCell> OnRecording(const CommandLine& line, Session* session) {
+std::vector<AblationCell> OnRecording(const CommandLine& line, Session* session,
+                                      AblationPlan* plan) {
   *session = OpenSession(line, FLAGS_dataset, FLAGS_tracks);
   if (!session->recording.truth) {
     throw InputError(session->recording.folder.string() +
                      ": has no ground truth; an ablation measures against it");
   }
-  const AblationPlan plan = ReadPlan(session->configuration.shared);
+  *plan = ReadPlan(session->configuration.shared);
   const std::vector<TrackFrameSet> frames = TracksOf(*session, FLAGS_quiet);
   if (frames.empty()) return {};
-  return RunPlan(plan, [&](const std::string& estimator, CalibrationPriors priors, int seed) {
+  return RunPlan(*plan, [&](const std::string& estimator, CalibrationPriors priors, int seed) {
     priors.told_errors_seed = seed;
     return RunRecorded(*session, frames, estimator, priors);
   });
+}
+
+// The perturbation in force as a file that --perturb takes.
+std::string PerturbationYaml(const CalibrationPriors& priors) {
+  ConfigSources sources;
+  ToldErrors errors = priors.told_errors;
+  ToldOffset offset = priors.told_offset;
+  sources.Read("told_errors", &errors);
+  sources.Read("told_offset", &offset);
+  return sources.ResolvedYaml();
 }
 
 int RunAblate(const CommandLine& line) {
@@ -165,15 +177,17 @@ int RunAblate(const CommandLine& line) {
   LogCapture log(FLAGS_quiet);
   RecordFolder record(FLAGS_out, line, log);
   Session session;
+  AblationPlan plan;
   const bool simulated = FLAGS_dataset.empty();
   const std::vector<AblationCell> cells =
-      simulated ? OnSimulation(line, &session.sources) : OnRecording(line, &session);
+      simulated ? OnSimulation(line, &session.sources, &plan) : OnRecording(line, &session, &plan);
   if (cells.empty()) return kInterrupted;
   const auto no_prediction = [](const AblationVariant&) { return Eigen::VectorXd(); };
   const std::string text = AblationText(cells, simulated, no_prediction);
   WriteTextFile(record.path() / "ablation.txt", text);
   WriteTextFile(record.path() / "ablation.json",
                 AblationJson(cells, simulated, no_prediction).dump(2) + "\n");
+  WriteTextFile(record.path() / "perturbation.yaml", PerturbationYaml(plan.priors));
   WriteTextFile(record.path() / "runs.csv", AblationRunsCsv(cells));
   WriteTextFile(record.path() / "calibration.csv", AblationCurvesCsv(cells));
   record.manifest()["states"] = FLAGS_states;
