@@ -249,7 +249,7 @@ TEST(ImuDelta, FirstOrderCorrectionIsOfFirstOrder) {
 
 TEST(ImuModel, CorrectionInvertsTheErrorModelAndItsJacobiansAreDerivatives) {
   Random random(9);
-  for (int trial = 0; trial < 20; ++trial) {
+  for (int trial = 0; trial < 200; ++trial) {
     const ImuCalibration calibration = RandomCalibration(&random, 0.05);
     const ImuBiases biases = RandomBiases(&random);
     const ImuRates rates = {RandomVector(&random, 1.0), RandomVector(&random, 9.0)};
