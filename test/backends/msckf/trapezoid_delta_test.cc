@@ -21,12 +21,12 @@ namespace {
 using test::kGravity;
 using test::RandomVector;
 
-const ImuNoise kNoise = {.gyroscope_density = 2e-3,
-                         .accelerometer_density = 2e-2,
-                         .gyroscope_random_walk = 1e-4,
-                         .accelerometer_random_walk = 3e-3};
+const ImuNoise kTrapezoidNoise = {.gyroscope_density = 2e-3,
+                                  .accelerometer_density = 2e-2,
+                                  .gyroscope_random_walk = 1e-4,
+                                  .accelerometer_random_walk = 3e-3};
 
-struct Interval {
+struct LinearInterval {
   InertialState start;
   ImuCalibration calibration;
   Eigen::Vector3d omega_0, omega_rate, a_0, a_rate;
@@ -44,13 +44,13 @@ struct Interval {
 };
 
 // T matrices up to 5 % off the identity, T_s up to 0.05 rad/s per g; 2 rad/s, a few m/s^2 beside g.
-Interval RandomInterval(Random* random) {
+LinearInterval RandomLinearInterval(Random* random) {
   const auto uniform = [random](double bound) {
     Eigen::Matrix3d M;
     for (double& x : M.reshaped()) x = random->Uniform(-bound, bound);
     return M;
   };
-  Interval interval;
+  LinearInterval interval;
   interval.calibration.T_g += uniform(0.05);
   interval.calibration.T_s = uniform(0.005);
   interval.calibration.T_a += uniform(0.05);
@@ -65,13 +65,14 @@ Interval RandomInterval(Random* random) {
   return interval;
 }
 
-using Rows = Eigen::Matrix<double, 9, 42>;  // Phi's first nine rows, then Gamma
+using TransitionRows = Eigen::Matrix<double, 9, 42>;  // Phi's first nine rows, then Gamma
 
 // d(theta, p, v at the end) / d(state at the start, T matrices) of the integrator itself.
-Rows NumericTransition(const Interval& interval, std::span<const ImuSample> readings) {
+TransitionRows NumericTransition(const LinearInterval& interval,
+                                 std::span<const ImuSample> readings) {
   const auto integrate = [&](const InertialState& start, const ImuCalibration& calibration) {
     const ImuDelta delta = IntegrateImu(
-        readings, start.biases, calibration, kNoise,
+        readings, start.biases, calibration, kTrapezoidNoise,
         {.covariance = false, .bias_jacobians = false, .calibration_jacobians = false});
     return Predict(start.nav, delta, kGravity);
   };
@@ -86,38 +87,40 @@ Rows NumericTransition(const Interval& interval, std::span<const ImuSample> read
       Eigen::Matrix<double, 42, 1>::Zero(), 1e-2);
 }
 
-Transition MakeWith(bool trapezoids, const Interval& interval,
-                    std::span<const ImuSample> readings) {
+Transition TransitionBy(bool trapezoids, const LinearInterval& interval,
+                        std::span<const ImuSample> readings) {
   const ImuDelta delta =
       trapezoids
-          ? IntegrateImuByTrapezoids(readings, interval.start.biases, interval.calibration, kNoise)
-          : IntegrateImu(readings, interval.start.biases, interval.calibration, kNoise);
+          ? IntegrateImuByTrapezoids(readings, interval.start.biases, interval.calibration,
+                                     kTrapezoidNoise)
+          : IntegrateImu(readings, interval.start.biases, interval.calibration, kTrapezoidNoise);
   const NavState end = Predict(interval.start.nav, delta, kGravity);
   return MakeTransition(delta, interval.start.nav, end, kGravity);
 }
 
-Rows Stacked(const Transition& transition) {
-  Rows rows;
+TransitionRows StackedRows(const Transition& transition) {
+  TransitionRows rows;
   rows << transition.Phi.topRows<9>(), transition.Gamma;
   return rows;
 }
 
-struct BlockName {
+struct NamedBlock {
   const char* name;
   int column;
   int width;
 };
-constexpr std::array<BlockName, 5> kColumns = {
+constexpr std::array<NamedBlock, 5> kParameterBlocks = {
     {{"b_g", 9, 3}, {"b_a", 12, 3}, {"T_g", 15, 9}, {"T_s", 24, 9}, {"T_a", 33, 9}}};
-constexpr std::array<BlockName, 3> kRows = {{{"theta", 0, 3}, {"p", 3, 3}, {"v", 6, 3}}};
+constexpr std::array<NamedBlock, 3> kStateBlocks = {{{"theta", 0, 3}, {"p", 3, 3}, {"v", 6, 3}}};
 
 TEST(TrapezoidDelta, MotionIsTheDeltasToTheBit) {
   Random random(1);
-  const Interval interval = RandomInterval(&random);
+  const LinearInterval interval = RandomLinearInterval(&random);
   const std::vector<ImuSample> readings = interval.Readings(40);
-  const ImuDelta a = IntegrateImu(readings, interval.start.biases, interval.calibration, kNoise);
-  const ImuDelta b =
-      IntegrateImuByTrapezoids(readings, interval.start.biases, interval.calibration, kNoise);
+  const ImuDelta a =
+      IntegrateImu(readings, interval.start.biases, interval.calibration, kTrapezoidNoise);
+  const ImuDelta b = IntegrateImuByTrapezoids(readings, interval.start.biases, interval.calibration,
+                                              kTrapezoidNoise);
   EXPECT_EQ(a.R.coeffs(), b.R.coeffs());
   EXPECT_EQ(a.s, b.s);
   EXPECT_EQ(a.y, b.y);
@@ -129,26 +132,27 @@ TEST(TrapezoidDelta, OrdersOfConvergence) {
   // Blocks against biases and T matrices at 8 and 16 steps over 0.2 s (25 and 12.5 ms: coarse, so
   // that the delta's errors stand above rounding) against the integrator's derivative at 640.
   Random random(2);
-  std::array<std::array<Rows, 2>, 2> errors = {};  // [rule][steps], squares summed over intervals
-  for (auto& rule : errors) rule.fill(Rows::Zero());
-  Rows scale = Rows::Zero();
+  std::array<std::array<TransitionRows, 2>, 2> errors =
+      {};  // [rule][steps], squares summed over intervals
+  for (auto& rule : errors) rule.fill(TransitionRows::Zero());
+  TransitionRows scale = TransitionRows::Zero();
   for (int trial = 0; trial < 10; ++trial) {
-    const Interval interval = RandomInterval(&random);
-    const Rows exact = NumericTransition(interval, interval.Readings(640));
+    const LinearInterval interval = RandomLinearInterval(&random);
+    const TransitionRows exact = NumericTransition(interval, interval.Readings(640));
     scale += exact.cwiseAbs2();
     for (int rule = 0; rule < 2; ++rule) {
       for (int halved = 0; halved < 2; ++halved) {
         const Transition transition =
-            MakeWith(rule == 1, interval, interval.Readings(halved == 0 ? 8 : 16));
-        errors[rule][halved] += (Stacked(transition) - exact).cwiseAbs2();
+            TransitionBy(rule == 1, interval, interval.Readings(halved == 0 ? 8 : 16));
+        errors[rule][halved] += (StackedRows(transition) - exact).cwiseAbs2();
       }
     }
   }
   std::printf("%-12s %-10s %-10s %5s   %-10s %-10s %5s\n", "block", "delta 25ms", "12.5 ms",
               "order", "trap. 25ms", "12.5 ms", "order");
-  for (const BlockName& row : kRows) {
-    for (const BlockName& column : kColumns) {
-      const auto norm = [&](const Rows& squares) {
+  for (const NamedBlock& row : kStateBlocks) {
+    for (const NamedBlock& column : kParameterBlocks) {
+      const auto norm = [&](const TransitionRows& squares) {
         return std::sqrt(squares.block(row.column, column.column, row.width, column.width).sum());
       };
       std::array<double, 2> order = {};
@@ -174,19 +178,19 @@ TEST(TrapezoidDelta, TransitionAgreesWithTheIntegratorAt200Hz) {
   Random random(3);
   std::array<std::array<double, 42>, 2> worst = {};
   for (int trial = 0; trial < 20; ++trial) {
-    const Interval interval = RandomInterval(&random);
+    const LinearInterval interval = RandomLinearInterval(&random);
     const std::vector<ImuSample> readings = interval.Readings(40);
-    const Rows exact = NumericTransition(interval, readings);
+    const TransitionRows exact = NumericTransition(interval, readings);
     for (int rule = 0; rule < 2; ++rule) {
-      const Transition transition = MakeWith(rule == 1, interval, readings);
-      const Rows rows = Stacked(transition);
+      const Transition transition = TransitionBy(rule == 1, interval, readings);
+      const TransitionRows rows = StackedRows(transition);
       // Against the state at the start both are exact.
       EXPECT_LT((rows - exact).leftCols<9>().cwiseAbs().maxCoeff(), 1e-11);
       EXPECT_TRUE(transition.Phi.bottomRows<6>().leftCols<9>().isZero(0.0));
       EXPECT_TRUE((transition.Phi.bottomRightCorner<6, 6>().isIdentity(0.0)));
-      for (const BlockName& column : kColumns) {
-        for (const BlockName& row : kRows) {
-          const auto block = [&](const Rows& all) {
+      for (const NamedBlock& column : kParameterBlocks) {
+        for (const NamedBlock& row : kStateBlocks) {
+          const auto block = [&](const TransitionRows& all) {
             return all.block(row.column, column.column, row.width, column.width);
           };
           double& off = worst[rule][column.column];
@@ -195,7 +199,7 @@ TEST(TrapezoidDelta, TransitionAgreesWithTheIntegratorAt200Hz) {
       }
     }
   }
-  for (const BlockName& column : kColumns) {
+  for (const NamedBlock& column : kParameterBlocks) {
     std::printf("d/d %s: largest relative difference at 5 ms: delta %.1e, trapezoids %.1e\n",
                 column.name, worst[0][column.column], worst[1][column.column]);
     EXPECT_LT(worst[0][column.column], 1e-6);
@@ -207,10 +211,10 @@ TEST(TrapezoidDelta, TransitionAgreesWithTheIntegratorAt200Hz) {
 
 TEST(TrapezoidDelta, CovarianceIsTheDeltasToSecondOrder) {
   Random random(4);
-  const Interval interval = RandomInterval(&random);
+  const LinearInterval interval = RandomLinearInterval(&random);
   const auto whitened_difference = [&](int steps) {
-    const Matrix15d exact = MakeWith(false, interval, interval.Readings(steps)).Q;
-    const Matrix15d Q = MakeWith(true, interval, interval.Readings(steps)).Q;
+    const Matrix15d exact = TransitionBy(false, interval, interval.Readings(steps)).Q;
+    const Matrix15d Q = TransitionBy(true, interval, interval.Readings(steps)).Q;
     const Eigen::LLT<Matrix15d> llt(exact);
     EXPECT_EQ(llt.info(), Eigen::Success);
     const Matrix15d L = llt.matrixL();
