@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <vector>
 
 #include "common/geometry/so3.h"
 #include "test/backends/window/random_window.h"

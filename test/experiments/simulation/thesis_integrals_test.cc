@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdio>
+#include <vector>
 
 #include "common/geometry/so3.h"
 #include "common/imu/imu_delta.h"
