@@ -181,7 +181,7 @@ TEST(TrapezoidDelta, OrdersOfConvergence) {
 TEST(TrapezoidDelta, TransitionAgreesWithTheIntegratorAt200Hz) {
   Random random(3);
   std::array<std::array<double, 42>, 2> worst = {};
-  for (int trial = 0; trial < 20; ++trial) {
+  for (int trial = 0; trial < 200; ++trial) {
     const LinearInterval interval = RandomLinearInterval(&random);
     const std::vector<ImuSample> readings = interval.Readings(40);
     const TransitionRows exact = NumericTransition(interval, readings);
@@ -208,8 +208,9 @@ TEST(TrapezoidDelta, TransitionAgreesWithTheIntegratorAt200Hz) {
                 column.name, worst[0][column.column], worst[1][column.column]);
     EXPECT_LT(worst[0][column.column], 1e-6);
     // Second order in |omega| h = 1e-2 for biases; first order for T matrices: over a step the
-    // rates change by 5 ms of 5 rad/s^2 and 20 m/s^3, a few percent of what they are.
-    EXPECT_LT(worst[1][column.column], column.width == 3 ? 1e-3 : 0.1);
+    // rates change by 5 ms of 5 rad/s^2 and 20 m/s^3, a few percent of what they are, more where a
+    // draw of omega is small.
+    EXPECT_LT(worst[1][column.column], column.width == 3 ? 2e-3 : 0.3);
   }
 }
 
