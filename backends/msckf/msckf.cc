@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "backends/msckf/transition.h"
+#include "backends/msckf/trapezoid_delta.h"
 #include "common/support/logging.h"
 
 namespace duet {
@@ -96,9 +97,10 @@ void Msckf::Propagate(Timestamp instant) {
   const InertialState& inertial = state_.inertial();
   if (instant == inertial.instant) return;
   imu_.Extract(inertial.instant, instant, &readings_);
-  const ImuDelta delta =
-      IntegrateImu(readings_, inertial.biases, state_.rig().imu, setup_.imu_noise,
-                   {.calibration_jacobians = state_.layout().EstimatesImu()});
+  const bool trapezoids = options_.transition == MsckfOptions::TransitionRule::kThesisTrapezoid;
+  const auto& integrate = trapezoids ? IntegrateImuByTrapezoids : IntegrateImu;
+  const ImuDelta delta = integrate(readings_, inertial.biases, state_.rig().imu, setup_.imu_noise,
+                                   {.calibration_jacobians = state_.layout().EstimatesImu()});
   const NavState next = Predict(inertial.nav, delta, setup_.g_G);
   const NavState& linearized_at = options_.first_estimates ? state_.nav_fej() : inertial.nav;
   const Transition transition = MakeTransition(delta, linearized_at, next, setup_.g_G);

@@ -5,6 +5,10 @@ namespace duet {
 /// The filter's own settings (thesis chapter 6). What it shares with the window is in
 /// SharedOptions.
 struct MsckfOptions {
+  /// How the error is taken over an IMU interval: by the shared ImuDelta, or with the thesis's
+  /// trapezoids in its place (trapezoid_delta.h).
+  enum class TransitionRule { kDelta, kThesisTrapezoid };
+
   int max_clones = 20;
   bool first_estimates = true;
   bool rebase_first_estimates = true;
@@ -17,6 +21,7 @@ struct MsckfOptions {
   double outlier_probability = 0.9999;
   int dead_reckoning_after_frames = 20;
   double max_velocity_m_per_s = 100.0;
+  TransitionRule transition = TransitionRule::kDelta;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -74,6 +79,14 @@ struct MsckfOptions {
              .max = 1e6});
     v.Field("max_velocity_m_per_s", &max_velocity_m_per_s,
             {.doc = "A faster state is reported as a failure.", .unit = "m/s", .min = 1});
+    v.Choice(
+        "transition", &transition,
+        {{"delta", TransitionRule::kDelta}, {"thesis_trapezoid", TransitionRule::kThesisTrapezoid}},
+        {.doc = "Phi, Gamma and Q of an IMU interval: delta takes the Jacobians and the "
+                "covariance of the IMU delta, which the window uses too (fourth order in the "
+                "step); thesis_trapezoid those of the thesis's trapezoids (B.49 to B.63, "
+                "composed over the readings, errata corrected), to show what they cost "
+                "(docs/equations.md). The state itself goes the same way in both."});
   }
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/geometry/so3.h"
+#include "common/imu/delta_step.h"
 #include "common/imu/motion_increment.h"
 #include "common/support/logging.h"
 
@@ -14,8 +15,7 @@
 //
 // A constant parameter x makes d_omega = W x and d_a = A x. Over one step from zero its effect is
 // integrated by Simpson's rule with the rotation of the Runge-Kutta step at both ends and in the
-// middle; the effect that came before is carried on by the exact structure of the step,
-//   theta_1 = theta_0,   s_1 = s_0 - [ds]x theta_0,   y_1 = y_0 + h s_0 - [dy]x theta_0.
+// middle; the effect that came before is carried on as delta_step.h says.
 
 namespace duet {
 namespace {
@@ -23,28 +23,12 @@ namespace {
 using Matrix3d = Eigen::Matrix3d;
 using Vector3d = Eigen::Vector3d;
 
-template <int kColumns>
-struct Effect {
-  Eigen::Matrix<double, 3, kColumns> theta;
-  Eigen::Matrix<double, 3, kColumns> s;
-  Eigen::Matrix<double, 3, kColumns> y;
-};
-
-// What one step needs of itself at its begin, middle and end.
-struct StepGeometry {
-  double h_s;
-  std::array<Matrix3d, 3> R;
-  std::array<Matrix3d, 3> minus_Ra_hat;  // -[R a]x
-  Vector3d ds;                           // s_1 - s_0
-  Vector3d dy;                           // y_1 - y_0 - h s_0
-};
-
 // Effect of d_omega = W x, d_a = A x over one step; W and A at begin, middle, end.
 template <int kColumns>
-void StepEffect(const StepGeometry& step,
-                const std::array<Eigen::Matrix<double, 3, kColumns>, 3>& W,
-                const std::array<Eigen::Matrix<double, 3, kColumns>, 3>& A,
-                Effect<kColumns>* effect) {
+void SimpsonEffect(const StepGeometry& step,
+                   const std::array<Eigen::Matrix<double, 3, kColumns>, 3>& W,
+                   const std::array<Eigen::Matrix<double, 3, kColumns>, 3>& A,
+                   StepEffect<kColumns>* effect) {
   using Block = Eigen::Matrix<double, 3, kColumns>;
   const double h = step.h_s;
   const Block w0 = step.R[0] * W[0];
@@ -57,17 +41,6 @@ void StepEffect(const StepGeometry& step,
   const Block f2 = step.minus_Ra_hat[2] * effect->theta + step.R[2] * A[2];
   effect->s = (h / 6.0) * (f0 + 4.0 * f1 + f2);
   effect->y = (h * h / 6.0) * (f0 + 2.0 * f1);
-}
-
-// J <- F J + effect on the rows theta, s, y.
-template <int kColumns>
-void CarryOn(const StepGeometry& step, const Effect<kColumns>& effect,
-             Eigen::Matrix<double, 9, kColumns>* J) {
-  const Eigen::Matrix<double, 3, kColumns> theta = J->template topRows<3>();
-  const Eigen::Matrix<double, 3, kColumns> s = J->template middleRows<3>(3);
-  J->template bottomRows<3>() += step.h_s * s - Hat(step.dy) * theta + effect.y;
-  J->template middleRows<3>(3) += effect.s - Hat(step.ds) * theta;
-  J->template topRows<3>() += effect.theta;
 }
 
 // Process noise of one step by two-point Gauss quadrature of the impulse responses to the four
@@ -106,25 +79,6 @@ void AddStepNoise(const StepGeometry& step, const ImuCorrection& correction, con
     block.block<3, 3>(12, 9) = wa * Matrix3d::Identity();
   }
   P->noalias() += G * G.transpose();
-}
-
-// P <- F P F' with the step's F (identity plus the few blocks that are not), rows then columns.
-void PropagateCovariance(const StepGeometry& step, const Effect<3>& b_g, const Effect<3>& b_a,
-                         Matrix15d* P) {
-  const Matrix3d minus_ds = -Hat(step.ds);
-  const Matrix3d minus_dy = -Hat(step.dy);
-  const auto apply_rows = [&](Matrix15d* M) {
-    const Eigen::Matrix<double, 3, 15> theta = M->middleRows<3>(0);
-    const Eigen::Matrix<double, 3, 15> s = M->middleRows<3>(3);
-    const Eigen::Matrix<double, 3, 15> g = M->middleRows<3>(9);
-    const Eigen::Matrix<double, 3, 15> a = M->middleRows<3>(12);
-    M->middleRows<3>(0) += b_g.theta * g + b_a.theta * a;
-    M->middleRows<3>(3) += minus_ds * theta + b_g.s * g + b_a.s * a;
-    M->middleRows<3>(6) += minus_dy * theta + step.h_s * s + b_g.y * g + b_a.y * a;
-  };
-  apply_rows(P);
-  P->transposeInPlace();
-  apply_rows(P);
 }
 
 Eigen::Matrix<double, 9, 1> FirstOrderChange(const ImuDelta& delta, const ImuBiases& biases,
@@ -176,14 +130,14 @@ ImuDelta IntegrateImu(std::span<const ImuSample> readings, const ImuBiases& bias
       step.dy = motion.y - before.y - step.h_s * before.s;
     }
     if (options.bias_jacobians) {
-      Effect<3> b_g;
-      Effect<3> b_a;
-      StepEffect<3>(step, {W_g, W_g, W_g}, {zero, zero, zero}, &b_g);
-      StepEffect<3>(step, {W_a, W_a, W_a}, {A_a, A_a, A_a}, &b_a);
+      StepEffect<3> b_g;
+      StepEffect<3> b_a;
+      SimpsonEffect<3>(step, {W_g, W_g, W_g}, {zero, zero, zero}, &b_g);
+      SimpsonEffect<3>(step, {W_a, W_a, W_a}, {A_a, A_a, A_a}, &b_a);
       CarryOn(step, b_g, &delta.J_b_g);
       CarryOn(step, b_a, &delta.J_b_a);
       if (options.covariance) {
-        PropagateCovariance(step, b_g, b_a, &delta.covariance);
+        PropagateStepCovariance(step, b_g, b_a, &delta.covariance);
         AddStepNoise(step, correction, noise, &delta.covariance);
       }
     }
@@ -194,8 +148,8 @@ ImuDelta IntegrateImu(std::span<const ImuSample> readings, const ImuBiases& bias
       correction.CalibrationJacobians(begin, &W[0], &A[0]);
       correction.CalibrationJacobians(middle, &W[1], &A[1]);
       correction.CalibrationJacobians(end, &W[2], &A[2]);
-      Effect<27> effect;
-      StepEffect<27>(step, W, A, &effect);
+      StepEffect<27> effect;
+      SimpsonEffect<27>(step, W, A, &effect);
       CarryOn(step, effect, &delta.J_T);
     }
     begin = end;

@@ -161,6 +161,29 @@ TEST(Msckf, GivesTheSameBytesTwice) {
   EXPECT_TRUE(bytes[0] == bytes[1]);
 }
 
+TEST(Msckf, TheThesissTrapezoidsChangeTheCovarianceAlone) {
+  // Before the first update: the state goes the same way, its covariance almost (200 Hz).
+  const SimulatedRecording recording = Simulate(Room(1, 2.0));
+  EstimatorOutput outputs[2];
+  for (const bool trapezoids : {false, true}) {
+    SharedOptions shared;
+    shared.calibration.estimate_T_g = true;
+    MsckfOptions options;
+    options.transition = trapezoids ? MsckfOptions::TransitionRule::kThesisTrapezoid
+                                    : MsckfOptions::TransitionRule::kDelta;
+    Feeder feeder(recording, shared, options);
+    feeder.StartDrawn(1);
+    for (int frame = 0; frame < 3; ++frame)
+      outputs[trapezoids] = feeder.Feed(recording.frames[frame]);
+    ASSERT_EQ(outputs[trapezoids].features.used, 0);
+  }
+  EXPECT_EQ(outputs[0].state.nav.p_GB, outputs[1].state.nav.p_GB);
+  EXPECT_EQ(outputs[0].state.nav.R_GB.coeffs(), outputs[1].state.nav.R_GB.coeffs());
+  const double off = (outputs[1].covariance - outputs[0].covariance).norm();
+  EXPECT_GT(off, 1e-12 * outputs[0].covariance.norm());
+  EXPECT_LT(off, 1e-2 * outputs[0].covariance.norm());
+}
+
 TEST(Msckf, OutliersAreRefused) {
   SimulationOptions options = Room(2, 10.0);
   options.outlier_share = 0.02;

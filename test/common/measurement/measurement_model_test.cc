@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+
 #include "common/geometry/so3.h"
 #include "common/imu/imu_delta.h"
 #include "common/measurement/rate_profile.h"
@@ -89,12 +92,24 @@ Scene RandomScene(Random* random, const RateProfile* rates) {
 }
 
 TEST(PredictPixel, JacobiansAreDerivativesAtRandomStates) {
+  // Both camera models, t_r up to 40 ms either way, rates corrected by biases and by T matrices up
+  // to 5 % off the identity (T_s: 5e-3 rad/s per m/s^2).
   Random random(21);
   const ImuBuffer imu = MovingImu();
-  RateProfile rates;
-  rates.Assign(imu, kInstant, 0.06, {}, {});
+  const auto uniform = [&random](double bound) {
+    return Eigen::Matrix3d::NullaryExpr([&]() { return random.Uniform(-bound, bound); }).eval();
+  };
+  std::array<int, 2> seen_by = {};
   for (int trial = 0; trial < 200; ++trial) {
+    ImuCalibration calibration;
+    calibration.T_g += uniform(0.05);
+    calibration.T_s += uniform(0.005);
+    calibration.T_a += uniform(0.05);
+    RateProfile rates;
+    rates.Assign(imu, kInstant, 0.06, {RandomVector(&random, 0.02), RandomVector(&random, 0.1)},
+                 calibration);
     const Scene s = RandomScene(&random, &rates);
+    ++seen_by[s.observation.camera];
     ObservationJacobians J;
     Eigen::Vector2d uv;
     ASSERT_TRUE(
@@ -123,33 +138,45 @@ TEST(PredictPixel, JacobiansAreDerivativesAtRandomStates) {
           PredictPixel(m.rig, m.anchor, m.landmark, m.state, m.observation, kGravity, &pixel));
       return pixel;
     };
-    // Steps of 1e-4 keep the extrapolated differences good to 1e-9; tau is differentiated apart
-    // with shorter steps that rarely cross an IMU sample, where rates have a kink.
+    // Steps of 1e-4 keep the differences good to 1e-9 of a block.
     const Eigen::MatrixXd N = NumericJacobian(moved, Eigen::VectorXd::Zero(41), 1e-4);
-    // Floors are the size of the terms that a small block is the difference of (camera 0 seen from
-    // itself) or that its rounding comes from (px over a step of 1e-4).
+    // Relative to the block's largest number. Where a block may vanish it is measured against the
+    // least that means anything: J_v = tau J_p, against 1 px per m/s; C0's extrinsics seen by C0
+    // itself are the difference of two terms of 100 px per rad or more; t_r acts by k t_r / N and
+    // not at all in the middle row, against 1 px/s.
     constexpr double kTolerance = 1e-6;
     EXPECT_LT(RelativeDifference(J.landmark, N.middleCols<3>(0)), kTolerance);
-    EXPECT_LT(RelativeDifference(J.anchor, N.middleCols<6>(3)), kTolerance);
-    EXPECT_LT(RelativeDifference(J.state.leftCols<6>(), N.middleCols<6>(9)), kTolerance);
+    EXPECT_LT(RelativeDifference(J.anchor.leftCols<3>(), N.middleCols<3>(3)), kTolerance);
+    EXPECT_LT(RelativeDifference(J.anchor.rightCols<3>(), N.middleCols<3>(6)), kTolerance);
+    EXPECT_LT(RelativeDifference(J.state.leftCols<3>(), N.middleCols<3>(9)), kTolerance);
+    EXPECT_LT(RelativeDifference(J.state.middleCols<3>(3), N.middleCols<3>(12)), kTolerance);
     EXPECT_LT(RelativeDifference(J.state.rightCols<3>(), N.middleCols<3>(15), 1.0), kTolerance);
     Eigen::Matrix<double, 2, 6> c0 = J.anchor_extrinsics;
     if (camera == 0) c0 += J.extrinsics;
-    EXPECT_LT(RelativeDifference(c0, N.middleCols<6>(18), 100.0), kTolerance);
+    EXPECT_LT(RelativeDifference(c0.leftCols<3>(), N.middleCols<3>(18), 100.0), kTolerance);
+    EXPECT_LT(RelativeDifference(c0.rightCols<3>(), N.middleCols<3>(21), 100.0), kTolerance);
     if (camera != 0) {
-      EXPECT_LT(RelativeDifference(J.extrinsics, N.middleCols<6>(24)), kTolerance);
+      EXPECT_LT(RelativeDifference(J.extrinsics.leftCols<3>(), N.middleCols<3>(24)), kTolerance);
+      EXPECT_LT(RelativeDifference(J.extrinsics.rightCols<3>(), N.middleCols<3>(27)), kTolerance);
     }
-    EXPECT_LT(RelativeDifference(J.parameters.leftCols(parameters), N.middleCols(30, parameters)),
+    constexpr int kPinhole = CameraModel::kPinholeParameters;
+    const int distortion = parameters - kPinhole;
+    EXPECT_LT(RelativeDifference(J.parameters.leftCols<kPinhole>(), N.middleCols<kPinhole>(30)),
               kTolerance);
+    EXPECT_LT(RelativeDifference(J.parameters.middleCols(kPinhole, distortion),
+                                 N.middleCols(30 + kPinhole, distortion)),
+              kTolerance);
+    // The rates have a kink at every IMU sample: shorter steps, which rarely cross one.
     const auto moved_times = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
       Eigen::VectorXd all = Eigen::VectorXd::Zero(41);
       all.tail<2>() = x;
       return moved(all);
     };
     const Eigen::MatrixXd T = NumericJacobian(moved_times, Eigen::VectorXd::Zero(2), 1e-6);
-    EXPECT_LT(RelativeDifference(J.t_d, T.col(0)), 1e-5);
-    EXPECT_LT(RelativeDifference(J.t_r, T.col(1), 1.0), 1e-5);
+    EXPECT_LT(RelativeDifference(J.t_d, T.col(0)), kTolerance);
+    EXPECT_LT(RelativeDifference(J.t_r, T.col(1), 1.0), kTolerance);
   }
+  EXPECT_GT(*std::min_element(seen_by.begin(), seen_by.end()), 50);  // both models
 }
 
 TEST(PredictPixel, AnchorsOwnObservationIsTheLandmarksDirection) {

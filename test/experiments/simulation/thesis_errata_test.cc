@@ -90,14 +90,47 @@ TEST_F(AppendixB, VelocityTermsHaveTheOtherSign) {
   const double direct_off = (b_a - A).norm();
   EXPECT_LT((b_a - A - indirect).norm(), direct_off);
   EXPECT_GT((b_a - A + indirect).norm(), direct_off);  // B.53 as printed
+  const Matrix39 T_a = delta_.J_T.block<3, 9>(3, 18) - A * ByElement(a_);
+  EXPECT_LT((T_a - indirect * ByElement(a_)).norm(), T_a.norm());
+  EXPECT_GT((T_a + indirect * ByElement(a_)).norm(), T_a.norm());  // B.62 as printed
 }
 
-TEST_F(AppendixB, PositionTermsOfTheGyroscopeAreHalfAgainTooLarge) {
-  const Matrix3d half = 0.5 * dt_ * delta_.J_b_g.middleRows<3>(3);  // B.51
-  const double ratio = half.norm() / delta_.J_b_g.bottomRows<3>().norm();
-  std::printf("B.51 over the exact block: %.3f\n", ratio);
-  // dt^3 / 4 in place of dt^3 / 6.
-  EXPECT_NEAR(ratio, 1.5, 0.02);
+TEST_F(AppendixB, PositionTermsThroughTheOrientationAreHalfAgainTooLarge) {
+  // Half dt times the velocity's term, dt^3 / 4 in place of dt^3 / 6: B.51, B.57, B.60.
+  const auto ratio = [this](const auto& velocity, const auto& position) {
+    return 0.5 * dt_ * velocity.norm() / position.norm();
+  };
+  const std::array<double, 3> ratios = {
+      ratio(delta_.J_b_g.middleRows<3>(3), delta_.J_b_g.bottomRows<3>()),
+      ratio(delta_.J_T.block<3, 9>(3, 0), delta_.J_T.block<3, 9>(6, 0)),
+      ratio(delta_.J_T.block<3, 9>(3, 9), delta_.J_T.block<3, 9>(6, 9))};
+  std::printf("B.51, B.57, B.60 over the exact blocks: %.3f %.3f %.3f\n", ratios[0], ratios[1],
+              ratios[2]);
+  for (const double r : ratios) EXPECT_NEAR(r, 1.5, 0.02);
+
+  // B.54 and B.63: right for the direct term of the accelerometer; what T_s adds to it, found as
+  // the difference to the same without T_s, is again 1.5 times too large.
+  ImuCalibration without = calibration_;
+  without.T_s.setZero();
+  const ImuRates read = DistortRates({omega_, a_}, without, {});
+  const std::array<ImuSample, 2> readings = {
+      ImuSample{.timestamp = 0, .omega_m = read.omega_B, .a_m = read.a_B},
+      ImuSample{.timestamp = 5'000'000, .omega_m = read.omega_B, .a_m = read.a_B}};
+  const ImuDelta direct = IntegrateImu(readings, {}, without, {}, {});
+  const Eigen::Matrix<double, 9, 3> through_b_a = delta_.J_b_a - direct.J_b_a;
+  const Eigen::Matrix<double, 9, 9> through_T_a =
+      delta_.J_T.rightCols<9>() - direct.J_T.rightCols<9>();
+  const std::array<double, 4> of_a = {
+      ratio(direct.J_b_a.middleRows<3>(3), direct.J_b_a.bottomRows<3>()),
+      ratio(direct.J_T.block<3, 9>(3, 18), direct.J_T.block<3, 9>(6, 18)),
+      ratio(through_b_a.middleRows<3>(3), through_b_a.bottomRows<3>()),
+      ratio(through_T_a.middleRows<3>(3), through_T_a.bottomRows<3>())};
+  std::printf("B.54, B.63: direct terms %.3f %.3f, terms through T_s %.3f %.3f\n", of_a[0], of_a[1],
+              of_a[2], of_a[3]);
+  EXPECT_NEAR(of_a[0], 1.0, 0.01);
+  EXPECT_NEAR(of_a[1], 1.0, 0.01);
+  EXPECT_NEAR(of_a[2], 1.5, 0.02);
+  EXPECT_NEAR(of_a[3], 1.5, 0.02);
 }
 
 TEST_F(AppendixB, TheSpecificForceEntersTheRateWithAPlus) {
