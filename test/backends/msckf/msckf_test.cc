@@ -167,7 +167,7 @@ TEST(Msckf, TheThesissTrapezoidsChangeTheCovarianceAlone) {
   EstimatorOutput outputs[2];
   for (const bool trapezoids : {false, true}) {
     SharedOptions shared;
-    shared.calibration.estimate_T_g = true;
+    shared.calibration.T_g.estimated = true;
     MsckfOptions options;
     options.transition = trapezoids ? MsckfOptions::TransitionRule::kThesisTrapezoid
                                     : MsckfOptions::TransitionRule::kDelta;
