@@ -23,7 +23,7 @@ Eigen::Quaterniond AlignAboveDiagonal(const Eigen::Matrix3d& T, const Eigen::Mat
       J.col(k) = AboveDiagonal(-T_Q * Hat(Eigen::Vector3d(Eigen::Vector3d::Unit(k))));
     }
     const Eigen::Vector3d phi = J.partialPivLu().solve(-residual);
-    Q = (Exp(phi) * Q).normalized();
+    Q = (ExpQuaternion(phi) * Q).normalized();
     if (phi.norm() < kConverged) break;
   }
   return Q;

@@ -6,6 +6,7 @@
 
 #include <cstring>
 
+#include "common/measurement/told_errors.h"
 #include "experiments/simulation/simulator.h"
 #include "test/backends/msckf/random_state.h"
 
@@ -93,7 +94,7 @@ TEST(Msckf, CalibratesPositionOfTheCameraAndTimeOffset) {
   SimulationOptions options = SimulationPreset("excited");
   options.duration_s = 15.0;
   options.t_d_s = 0.004;
-  options.told_errors = shared.calibration;
+  options.told_errors = ToldErrorsOfPriors(shared.calibration);
   const SimulatedRecording recording = Simulate(options);
   Feeder feeder(recording, shared);
   feeder.StartDrawn(3);

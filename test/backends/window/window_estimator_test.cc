@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/geometry/so3.h"
+#include "common/measurement/told_errors.h"
 #include "experiments/simulation/simulator.h"
 
 namespace duet {
@@ -59,7 +60,7 @@ Flight Easy(double duration_s, int cameras = 1, const std::string& preset = "roo
   simulation.duration_s = duration_s;
   simulation.cameras = cameras;
   simulation.seed = 3;
-  simulation.told_errors = calibration;
+  simulation.told_errors = ToldErrorsOfPriors(calibration);
   Flight run;
   run.recording = Simulate(simulation);
   run.shared.calibration = calibration;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "common/geometry/so3.h"
+#include "common/measurement/told_errors.h"
 #include "common/support/input_error.h"
 #include "experiments/simulation/scenario.h"
 
@@ -331,15 +332,15 @@ TEST(Simulator, WeakTracksEndEarly) {
 TEST(Simulator, ToldRigIsOffByTheToldErrors) {
   SimulationOptions options = ShortRun();
   options.duration_s = 0.5;
-  options.told_errors.p_CB_m = 0.02;
-  options.told_errors.R_CB_rad = 0.0175;
-  options.told_errors.t_d_s = 0.01;
+  CalibrationPriors priors;
+  priors.p_CB.estimated = priors.R_CB.estimated = priors.t_d.estimated = true;
+  options.told_errors = ToldErrorsOfPriors(priors);
   double sum = 0.0;
   constexpr int kSeeds = 100;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     options.seed = seed;
     const SimulatedRecording recording = Simulate(options);
-    const CalibrationLayout layout(options.told_errors, recording.true_rig);
+    const CalibrationLayout layout(priors, recording.true_rig);
     const Eigen::VectorXd error = BoxMinus(recording.true_rig, recording.told_rig, layout);
     sum += error.cwiseQuotient(layout.PriorSigmas()).squaredNorm();
     EXPECT_EQ(recording.true_rig.cameras[0].model.parameters(),
