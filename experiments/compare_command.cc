@@ -8,6 +8,7 @@
 #include "common/support/text_file.h"
 #include "evaluation/comparison.h"
 #include "evaluation/requirements.h"
+#include "experiments/calibration_watch.h"
 #include "experiments/child_process.h"
 #include "experiments/commands.h"
 #include "experiments/common_flags.h"
@@ -164,6 +165,15 @@ class Comparator {
         late && !run.trajectory.empty()) {
       comparison_.warnings.push_back(name + " " + *late);
     }
+    const fs::path calibration = folder / "calibration.csv";
+    if (fs::exists(calibration)) {
+      const std::vector<CalibrationWatch::Number> numbers =
+          ReadCalibrationCsv(ReadTextFile(calibration), calibration.string());
+      for (const std::string& warning : CalibrationWarnings(numbers)) {
+        comparison_.warnings.push_back(name + ": " + warning);
+      }
+      calibration_text_ += "\n" + name + "\n" + CalibrationWatchText(numbers);
+    }
     comparison_.runs.push_back(std::move(run.run));
     estimates_.push_back({name, std::move(run.trajectory)});
     return kDone;
@@ -188,7 +198,7 @@ class Comparator {
 
   int Report(const std::vector<Requirement>& requirements) {
     const nlohmann::ordered_json json = ComparisonJson(comparison_);
-    std::string text = ComparisonText(comparison_);
+    std::string text = ComparisonText(comparison_) + calibration_text_;
     bool all_met = true;
     for (const Requirement& requirement : requirements) {
       const RequirementOutcome outcome = EvaluateRequirement(requirement, json);
@@ -222,6 +232,7 @@ class Comparator {
   Session session_;
   Comparison comparison_;
   std::vector<NamedTrajectory> estimates_;
+  std::string calibration_text_;  // a table an estimator
 };
 
 int RunCompare(const CommandLine& line) {

@@ -73,8 +73,9 @@ int RunRun(const CommandLine& line) {
   LogCapture log(FLAGS_quiet);
   Session session = OpenSession(line, FLAGS_dataset, FLAGS_tracks);
   EstimatorStart start = session.Start();
+  const EstimatorSetup setup = session.Setup();
   const std::unique_ptr<Estimator> estimator =
-      MakeEstimator(FLAGS_backend, session.Setup(), session.configuration.backends);
+      MakeEstimator(FLAGS_backend, setup, session.configuration.backends);
   RecordFolder record(FLAGS_out, line, log);
   Manifest& manifest = record.manifest();
   manifest["dataset"] = DescribeRecording(session.recording);
@@ -92,7 +93,7 @@ int RunRun(const CommandLine& line) {
   }
   FrameSource& frames = tracker ? *tracker : *replay;
 
-  RunRecorder recorder(record.path(), estimator->layout(), FLAGS_covariance);
+  RunRecorder recorder(record.path(), estimator->layout(), setup.rig, FLAGS_covariance);
   TimingLog timing;
   Progress progress(FLAGS_backend, frames.count(), "frames", FLAGS_quiet);
   const LoopOutcome outcome =
@@ -123,6 +124,10 @@ int RunRun(const CommandLine& line) {
   const std::optional<std::string> late =
       recorder.summary().first_instant ? LateStartWarning(wait) : std::nullopt;
   if (late) LOG(WARNING) << FLAGS_backend << " " << *late;
+  const std::vector<CalibrationWatch::Number> calibration = recorder.calibration().Numbers();
+  for (const std::string& warning : CalibrationWarnings(calibration)) {
+    LOG(WARNING) << FLAGS_backend << ": " << warning;
+  }
   record.Commit(session.sources);
   const RunSummary& summary = recorder.summary();
   const std::string waited =
@@ -130,6 +135,7 @@ int RunRun(const CommandLine& line) {
   std::printf("%s: %s, %d of %d frames tracked%s%s%s\n", FLAGS_backend.c_str(),
               OutcomeName(outcome), summary.tracking, summary.frames, waited.c_str(),
               reason.empty() ? "" : "; ", reason.c_str());
+  if (!calibration.empty()) std::fputs(CalibrationWatchText(calibration).c_str(), stdout);
   return StatusOf(outcome);
 }
 

@@ -37,8 +37,10 @@ int ObservationCount(const TrackFrameSet& frames) {
 }  // namespace
 
 RunRecorder::RunRecorder(const std::filesystem::path& folder, const CalibrationLayout& layout,
-                         bool with_covariance)
-    : layout_(layout),
+                         const RigCalibration& told, bool with_covariance)
+    : folder_(folder),
+      layout_(layout),
+      calibration_(layout, told),
       trajectory_(folder / "trajectory.tum"),
       states_(folder / "states.csv"),
       features_(folder / "features.csv") {
@@ -106,6 +108,7 @@ void RunRecorder::Add(const TrackFrameSet& frames, const EstimatorOutput& output
   if (!summary_.first_instant) summary_.first_instant = output.state.instant;
   summary_.last_instant = output.state.instant;
   AddState(output);
+  calibration_.Add(output);
   if (covariance_) AddCovariance(output);
 }
 
@@ -167,6 +170,8 @@ void RunRecorder::AddFeatures(const TrackFrameSet& frames, const char* status,
 }
 
 void RunRecorder::Close() {
+  const std::vector<CalibrationWatch::Number> numbers = calibration_.Numbers();
+  if (!numbers.empty()) WriteTextFile(folder_ / "calibration.csv", CalibrationCsv(numbers));
   trajectory_.Close();
   states_.Close();
   features_.Close();

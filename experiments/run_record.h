@@ -6,6 +6,7 @@
 
 #include "backends/estimator.h"
 #include "common/support/text_file.h"
+#include "experiments/calibration_watch.h"
 
 namespace duet {
 
@@ -26,12 +27,14 @@ struct RunSummary {
 };
 
 /// Writes what an estimator says, frame by frame, into a folder (docs/formats.md):
-/// trajectory.tum, states.csv, features.csv and, when asked, covariance.csv. All are canonical: the
+/// trajectory.tum, states.csv, features.csv, where something is estimated calibration.csv
+/// and, when asked, covariance.csv. All are canonical: the
 /// same bytes for the same input.
 class RunRecorder {
  public:
+  /// `told`: the rig that the estimator was told.
   RunRecorder(const std::filesystem::path& folder, const CalibrationLayout& layout,
-              bool with_covariance);
+              const RigCalibration& told, bool with_covariance);
 
   /// A frame that came before the start.
   void AddWaiting(const TrackFrameSet& frames);
@@ -40,6 +43,8 @@ class RunRecorder {
   void Close();
 
   [[nodiscard]] const RunSummary& summary() const { return summary_; }
+  /// What became of the estimated calibration; empty where nothing is estimated.
+  [[nodiscard]] const CalibrationWatch& calibration() const { return calibration_; }
 
  private:
   void CountFrame(const TrackFrameSet& frames);
@@ -47,7 +52,9 @@ class RunRecorder {
   void AddCovariance(const EstimatorOutput& output);
   void AddFeatures(const TrackFrameSet& frames, const char* status, const FeatureCounts& counts);
 
+  std::filesystem::path folder_;
   CalibrationLayout layout_;
+  CalibrationWatch calibration_;
   TextFileWriter trajectory_;
   TextFileWriter states_;
   TextFileWriter features_;

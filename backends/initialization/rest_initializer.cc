@@ -87,8 +87,14 @@ InitializationResult RestInitializer::Update(const TrackFrameSet& frames, const 
   const Eigen::Matrix3d R_final = result.state.nav.R_GB.toRotationMatrix();
   const Eigen::Vector3d up_G = -setup_.g_G / g;
   const double lateral = options_.sigma_b_a_m_per_s2;
+  // T matrices that are themselves uncertain turn gravity into readings that look like biases. The
+  // start covariance has no part for how the two go together: it counts them as independent, which
+  // is the wider choice.
+  const CalibrationPriors& priors = setup_.shared.calibration;
+  const double force_by_T_a = priors.T_a.estimated ? g * priors.T_a.sigma : 0.0;
+  const double rate_by_T_s = priors.T_s.estimated ? g * priors.T_s.sigma : 0.0;
   // Vibration is no white noise; its mean over half a second is trusted to 0.02 m/s^2 at best.
-  const double vertical = std::hypot(force.sigma, 0.02);
+  const double vertical = std::hypot(force.sigma, 0.02, force_by_T_a);
   Matrix15d& P = result.covariance;
   P.setZero();
   const Eigen::Matrix3d bias_G =
@@ -100,7 +106,7 @@ InitializationResult RestInitializer::Update(const TrackFrameSet& frames, const 
   P.block<3, 3>(0, 0) = J_theta_bias * bias_B * J_theta_bias.transpose();
   P.block<3, 3>(0, 12) = J_theta_bias * bias_B;
   P.block<3, 3>(12, 0) = P.block<3, 3>(0, 12).transpose();
-  const double tilt_noise = std::hypot(force.sigma / g, 1e-3);
+  const double tilt_noise = std::hypot(force.sigma / g, 1e-3, force_by_T_a / g);
   P.block<3, 3>(0, 0) +=
       tilt_noise * tilt_noise * Eigen::Matrix3d::Identity() +
       (options_.sigma_yaw_rad * options_.sigma_yaw_rad - tilt_noise * tilt_noise) * up_G *
@@ -108,7 +114,8 @@ InitializationResult RestInitializer::Update(const TrackFrameSet& frames, const 
   P.block<3, 3>(3, 3).diagonal().setConstant(options_.sigma_position_m * options_.sigma_position_m);
   P.block<3, 3>(6, 6).diagonal().setConstant(setup_.shared.standstill.velocity_sigma_m_per_s *
                                              setup_.shared.standstill.velocity_sigma_m_per_s);
-  const double gyro = std::min(options_.sigma_b_g_rad_per_s, std::hypot(omega.sigma, 1e-3));
+  const double gyro = std::hypot(
+      std::min(options_.sigma_b_g_rad_per_s, std::hypot(omega.sigma, 1e-3)), rate_by_T_s);
   P.block<3, 3>(9, 9).diagonal().setConstant(gyro * gyro);
   return result;
 }
