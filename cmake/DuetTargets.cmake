@@ -17,7 +17,8 @@ if(DUET_PRECOMPILED_HEADERS)
   target_link_libraries(duet_precompiled PRIVATE Eigen3::Eigen)
   target_precompile_headers(duet_precompiled PRIVATE
     <Eigen/Dense> <algorithm> <array> <cmath> <cstdint> <functional> <map> <memory>
-    <optional> <span> <sstream> <string> <string_view> <unordered_map> <vector>)
+    <optional> <span> <sstream> <string> <string_view> <unordered_map> <vector>
+    "${PROJECT_SOURCE_DIR}/common/support/eigen_products.h")
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(duet_precompiled PRIVATE -fpch-preprocess)
   endif()
