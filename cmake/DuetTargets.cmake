@@ -1,5 +1,7 @@
 # duet_add_library(NAME SOURCES ... LINK ... [PRIVATE_LINK ...]): one library a folder, duet::NAME.
-# duet_add_test(NAME SOURCES ... LINK ...): one GoogleTest program, every case a CTest test.
+# duet_add_test(NAME SOURCES ... LINK ... [LABELS ...] [COST SECONDS]): one GoogleTest program, one
+# CTest test. COST is its time on one core where that is more than a few seconds: ctest starts the
+# longest first, and no core waits at the end (a fresh build folder knows no times of its own).
 
 add_custom_target(unit_tests)  # all programs with the label unit, for the sanitizer builds
 
@@ -49,7 +51,7 @@ function(duet_add_library name)
 endfunction()
 
 function(duet_add_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "COST" "SOURCES;LINK;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   duet_configure_target(${name})
   target_link_libraries(${name} PRIVATE ${ARG_LINK} duet_test_main GTest::gmock GTest::gtest)
@@ -58,6 +60,9 @@ function(duet_add_test name)
   endif()
   add_test(NAME ${name} COMMAND ${name})
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}")
+  if(ARG_COST)
+    set_tests_properties(${name} PROPERTIES COST ${ARG_COST})
+  endif()
   if("unit" IN_LIST ARG_LABELS)
     add_dependencies(unit_tests ${name})
   endif()
