@@ -53,6 +53,9 @@ endfunction()
 function(duet_add_test name)
   cmake_parse_arguments(ARG "" "COST" "SOURCES;LINK;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
+  # Where sources are compiled in batches: nearly always one for a program, so that what its sources
+  # share is instantiated once.
+  set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 12)
   duet_configure_target(${name})
   target_link_libraries(${name} PRIVATE ${ARG_LINK} duet_test_main GTest::gmock GTest::gtest)
   if(NOT ARG_LABELS)
