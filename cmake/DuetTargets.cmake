@@ -1,5 +1,7 @@
 # duet_add_library(NAME SOURCES ... LINK ... [PRIVATE_LINK ...]): one library a folder, duet::NAME.
-# duet_add_test(NAME SOURCES ... LINK ...): one GoogleTest program, every case a CTest test.
+# duet_add_test(NAME SOURCES ... LINK ... [LABELS ...] [COST SECONDS]): one GoogleTest program, one
+# CTest test. COST is its time on one core where that is more than a few seconds: ctest starts the
+# longest first, and no core waits at the end (a fresh build folder knows no times of its own).
 
 add_custom_target(unit_tests)  # all programs with the label unit, for the sanitizer builds
 
@@ -17,7 +19,8 @@ if(DUET_PRECOMPILED_HEADERS)
   target_link_libraries(duet_precompiled PRIVATE Eigen3::Eigen)
   target_precompile_headers(duet_precompiled PRIVATE
     <Eigen/Dense> <algorithm> <array> <cmath> <cstdint> <functional> <map> <memory>
-    <optional> <span> <sstream> <string> <string_view> <unordered_map> <vector>)
+    <optional> <span> <sstream> <string> <string_view> <unordered_map> <vector>
+    "${PROJECT_SOURCE_DIR}/common/support/eigen_products.h")
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(duet_precompiled PRIVATE -fpch-preprocess)
   endif()
@@ -48,8 +51,11 @@ function(duet_add_library name)
 endfunction()
 
 function(duet_add_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "COST" "SOURCES;LINK;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
+  # Where sources are compiled in batches: nearly always one for a program, so that what its sources
+  # share is instantiated once.
+  set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 12)
   duet_configure_target(${name})
   target_link_libraries(${name} PRIVATE ${ARG_LINK} duet_test_main GTest::gmock GTest::gtest)
   if(NOT ARG_LABELS)
@@ -57,6 +63,9 @@ function(duet_add_test name)
   endif()
   add_test(NAME ${name} COMMAND ${name})
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}")
+  if(ARG_COST)
+    set_tests_properties(${name} PROPERTIES COST ${ARG_COST})
+  endif()
   if("unit" IN_LIST ARG_LABELS)
     add_dependencies(unit_tests ${name})
   endif()

@@ -8,6 +8,7 @@
 
 #include "backends/factory.h"
 #include "experiments/simulation/simulator.h"
+#include "test/seeds.h"
 
 namespace duet {
 namespace {
@@ -79,7 +80,7 @@ TEST(RealModels, FilterAndWindowMeetAsTheNoiseFades) {
   const std::vector<double> scales = {1.0, 0.1, 0.01, 0.001};
   for (const double scale : scales) {
     double sum2 = 0.0;
-    constexpr int kSeeds = 3;
+    constexpr int kSeeds = test::Seeds(3, 1);
     for (int seed = 1; seed <= kSeeds; ++seed) {
       SimulationOptions options = SimulationPreset("excited");
       options.seed = seed;
