@@ -15,5 +15,6 @@ namespace duet {
 [[nodiscard]] Command MonteCarloCommand();
 [[nodiscard]] Command TrackErrorCommand();
 [[nodiscard]] Command AllanCommand();
+[[nodiscard]] Command ObservabilityCommand();
 
 }  // namespace duet
