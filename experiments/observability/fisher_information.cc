@@ -39,7 +39,11 @@ FisherInformation::FisherInformation(const ObservedMotion& motion)
   CHECK(!motion.states.empty());
   CHECK_LE(layout_.size(), ReprojectionJacobians::kMaxCalibration);
   for (const ImuSample& sample : motion.imu) imu_.Add(sample);
+  for (const ImuSample& sample : motion.readings.empty() ? motion.imu : motion.readings) {
+    readings_.Add(sample);
+  }
   CHECK(imu_.Covers(motion.states.front().instant, motion.states.back().instant));
+  CHECK(readings_.Covers(motion.states.front().instant, motion.states.back().instant));
   IntegrateLinks();
   Collect();
   TriangulateTracks();
@@ -66,14 +70,14 @@ void FisherInformation::IntegrateLinks() {
     Frame& frame = frames_[k];
     const InertialState& state = motion_.states[k];
     if (off_instant_) {
-      frame.rates.Assign(imu_, state.instant, reach_s, state.biases, setup.rig.imu);
+      frame.rates.Assign(readings_, state.instant, reach_s, state.biases, setup.rig.imu);
     }
     const bool at_rest = standstill.Update(motion_.frames[k], state.instant, imu_);
     if (k == 0) continue;
     frame.at_rest_since_before = at_rest;
     const InertialState& before = motion_.states[k - 1];
     CHECK_GT(state.instant, before.instant);
-    imu_.Extract(before.instant, state.instant, &readings);
+    readings_.Extract(before.instant, state.instant, &readings);
     const ImuDelta delta =
         IntegrateImu(readings, before.biases, setup.rig.imu, setup.imu_noise, options);
     const Matrix15d W = SquareRootInformation(delta.covariance);
@@ -148,6 +152,8 @@ Eigen::MatrixXd FisherInformation::PriorInformation(double scale) const {
 PredictedCovariance FisherInformation::Predict(const InformationOptions& options,
                                                const Observer& observer) const {
   const EstimatorSetup& setup = motion_.setup;
+  RigCalibration rig = setup.rig;
+  if (options.at_instants) rig.t_r_s = 0.0;
   const double weight = 1.0 / setup.shared.pixel_noise_px;
   const auto piece_of = [&](const Pixel& pixel) {
     return options.window_frames > 0 ? pixel.piece_frame / options.window_frames : 0;
@@ -205,8 +211,8 @@ PredictedCovariance FisherInformation::Predict(const InformationOptions& options
       }
       Eigen::Vector2d uv;
       ObservationJacobians model;
-      if (!PredictPixel(setup.rig, motion_.states[track.first_frame].nav.pose(), track.point,
-                        StateOf(k), pixel.observation, setup.g_G, &uv, &model)) {
+      if (!PredictPixel(rig, motion_.states[track.first_frame].nav.pose(), track.point, StateOf(k),
+                        pixel.observation, setup.g_G, &uv, &model)) {
         continue;
       }
       auto [entry, is_new] = open.try_emplace(pixel.track);

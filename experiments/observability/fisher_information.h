@@ -27,7 +27,13 @@ struct ObservedMotion {
   /// t_d, ascending; the IMU covers them all.
   const std::vector<TrackFrameSet>& frames;
   std::vector<InertialState> states;  ///< true or estimated, biases included
-  const std::vector<ImuSample>& imu;
+  const std::vector<ImuSample>& imu;  ///< as recorded
+  /// What the IMU would read along the motion without noise, over the same span; empty: unknown,
+  /// `imu` stands for it. It is what factors are linearized at. A Jacobian made from noisy readings
+  /// holds whitened noise, about one unit of information a frame on numbers of T_g and T_a that the
+  /// motion says nothing of: little beside a prior of 0.01 (1e4 units), and enough to hide what
+  /// cannot be observed.
+  std::vector<ImuSample> readings = {};
 };
 
 /// How much of a motion's information is used, and with what priors.
@@ -40,6 +46,11 @@ struct InformationOptions {
   /// Multiplies the standard deviations of the calibration's priors and of the first state's tilt,
   /// velocity and biases (its yaw and position are a gauge and stay).
   double prior_scale = 1.0;
+  /// Linearizes pixels as if each were taken at its state's instant (t_r = 0; its derivative
+  /// stays). Between instant and row the measurement model freezes the rates, whose derivatives to
+  /// biases and T matrices are left out by definition; that ties, by a little, directions that no
+  /// measurement ties, and hides them.
+  bool at_instants = false;
   /// Instants after the first frame at which sigmas are kept, ascending, s; the end always is.
   std::vector<double> times_s = {};
 };
@@ -121,7 +132,8 @@ class FisherInformation {
   ObservedMotion motion_;
   CalibrationLayout layout_;
   bool off_instant_;
-  ImuBuffer imu_;
+  ImuBuffer imu_;       ///< as recorded
+  ImuBuffer readings_;  ///< what is linearized at
   std::vector<Frame> frames_;
   std::vector<Track> tracks_;
   int not_triangulated_ = 0;

@@ -1,6 +1,7 @@
 #include "experiments/observability/information_filter.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "backends/window/normal_equations.h"
 #include "backends/window/window_linearizer.h"
@@ -89,43 +90,55 @@ void InformationFilter::CloseLandmark(int landmark) {
   free_.push_back(landmark);
 }
 
+// With the IMU's noise w (15, unit variance) in place of frame i,
+//
+//   J_i x_i + J_j x_j + J_c c = w   =>   x_i = M w + A x_j + B c,
+//
+// the information over (x_i, c, landmarks) becomes one over (w, x_j, c, landmarks), to which w adds
+// the identity; w is eliminated. Adding J'J and eliminating x_i is the same on paper, but a
+// difference of the IMU's information (1e9 and more) and itself, which drowns what little is known
+// of a state that drifts.
 void InformationFilter::Propagate(const ImuFactorJacobians& J, const StandstillResidual* rest) {
   const Eigen::Index n = size();
   const Eigen::Index c = kFrameSize;
-  // Frame i against (frame j in its place | calibration | landmarks), and i's own block.
-  Matrix15d G = H_.topLeftCorner<kFrameSize, kFrameSize>();
-  Eigen::MatrixXd B = H_.topLeftCorner(kFrameSize, n);
-  G.noalias() += J.J_i.transpose() * J.J_i;
-  B.leftCols<kFrameSize>().noalias() = J.J_i.transpose() * J.J_j;
-  H_.block(0, 0, kFrameSize, n).setZero();
-  H_.block(0, 0, n, kFrameSize).setZero();
-  H_.topLeftCorner<kFrameSize, kFrameSize>().noalias() = J.J_j.transpose() * J.J_j;
-
   const std::vector<int>& imu_columns = layout_->imu_columns();
-  if (!imu_columns.empty()) {
-    const auto width = static_cast<Eigen::Index>(imu_columns.size());
-    const Eigen::Matrix<double, kFrameSize, Eigen::Dynamic> J_c = J.J_T(Eigen::all, imu_columns);
-    B.middleCols(c, width).noalias() += J.J_i.transpose() * J_c;
-    H_.block(0, c, kFrameSize, width).noalias() += J.J_j.transpose() * J_c;
-    H_.block(c, 0, width, kFrameSize).noalias() += J_c.transpose() * J.J_j;
-    H_.block(c, c, width, width).noalias() += J_c.transpose() * J_c;
-  }
-  if (rest != nullptr) {
-    const Eigen::Matrix<double, 6, 1> w = rest->sigma.cwiseInverse();
-    const Eigen::Matrix<double, 6, 9> J_i = w.asDiagonal() * rest->J_i;
-    const Eigen::Matrix<double, 6, 9> J_j = w.asDiagonal() * rest->J_j;
-    G.topLeftCorner<9, 9>().noalias() += J_i.transpose() * J_i;
-    B.topLeftCorner<9, 9>().noalias() += J_i.transpose() * J_j;
-    H_.topLeftCorner<9, 9>().noalias() += J_j.transpose() * J_j;
-  }
+  const auto width = static_cast<Eigen::Index>(imu_columns.size());
+  const Eigen::PartialPivLU<Matrix15d> lu(J.J_i);
+  const Matrix15d M = lu.inverse();
+  const Matrix15d A = -lu.solve(J.J_j);
+  Eigen::Matrix<double, kFrameSize, Eigen::Dynamic> B(kFrameSize, width);
+  if (width > 0) B = -lu.solve(J.J_T(Eigen::all, imu_columns));
 
-  // J_i of the IMU factor is invertible, and so is G; scaled to a unit diagonal.
-  const Vector15d scale = G.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Matrix15d> llt(scale.asDiagonal() * G * scale.asDiagonal());
-  CHECK(llt.info() == Eigen::Success) << "a frame's information is not positive definite";
-  B = scale.asDiagonal() * B;
-  llt.matrixL().solveInPlace(B);
-  H_.topLeftCorner(n, n).noalias() -= B.transpose() * B;
+  // x_j and c in place of x_i: first the columns, in frame i's rows and in all others, ...
+  Eigen::MatrixXd frame_rows = H_.topLeftCorner(kFrameSize, n);
+  const Matrix15d H_ii = frame_rows.leftCols<kFrameSize>();
+  frame_rows.leftCols<kFrameSize>() = H_ii * A;
+  frame_rows.middleCols(c, width).noalias() += H_ii * B;
+  const Eigen::MatrixXd below = H_.block(c, 0, n - c, kFrameSize);
+  H_.block(c, 0, n - c, kFrameSize).noalias() = below * A;
+  H_.block(c, c, n - c, width).noalias() += below * B;
+  // ... then the rows.
+  H_.topLeftCorner(kFrameSize, n).noalias() = A.transpose() * frame_rows;
+  H_.block(c, 0, width, n).noalias() += B.transpose() * frame_rows;
+
+  Matrix15d G = Matrix15d::Identity() + M.transpose() * H_ii * M;
+  Eigen::MatrixXd Y = M.transpose() * frame_rows;
+  if (rest != nullptr) {
+    const Eigen::Matrix<double, 6, 1> weight = rest->sigma.cwiseInverse();
+    const Eigen::Matrix<double, 6, 9> J_rest = weight.asDiagonal() * rest->J_i;
+    const Eigen::Matrix<double, 6, kFrameSize> J_w = J_rest * M.topRows<9>();
+    Eigen::MatrixXd J_x = Eigen::MatrixXd::Zero(6, c + width);
+    J_x.leftCols<kFrameSize>() = J_rest * A.topRows<9>();
+    J_x.leftCols<9>() += weight.asDiagonal() * rest->J_j;
+    J_x.rightCols(width) = J_rest * B.topRows<9>();
+    G.noalias() += J_w.transpose() * J_w;
+    Y.leftCols(c + width).noalias() += J_w.transpose() * J_x;
+    H_.topLeftCorner(c + width, c + width).noalias() += J_x.transpose() * J_x;
+  }
+  const Eigen::LLT<Matrix15d> llt(G);
+  CHECK(llt.info() == Eigen::Success) << "the information is not positive semidefinite";
+  llt.matrixL().solveInPlace(Y);
+  H_.topLeftCorner(n, n).noalias() -= Y.transpose() * Y;
 }
 
 Eigen::MatrixXd InformationFilter::Covariance() const {

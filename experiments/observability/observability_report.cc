@@ -43,7 +43,7 @@ const char* UnitOf(CalibrationBlock block) {
 }
 
 ObservabilityVerdict Judge(const Observability::Component& component) {
-  if (component.wide > kUnobservableRatio * kWidePriors * component.prior) {
+  if (component.unobservable > kUnobservableShare) {
     return ObservabilityVerdict::kUnobservable;
   }
   const double ratio = component.cut / component.prior;
@@ -70,23 +70,23 @@ std::string Joined(const std::vector<std::string>& names) {
 }
 
 std::string DirectionsText(const std::vector<CalibrationDirection>& directions,
-                           const std::vector<std::string>& names, double scale) {
+                           const std::vector<std::string>& names) {
   std::string text;
   for (const CalibrationDirection& direction : directions) {
-    text += Format("  %5.2f  ", direction.ratio / scale) + DirectionText(direction, names) + "\n";
+    text += Format("  %5.2f  ", direction.ratio) + DirectionText(direction, names) + "\n";
   }
   return text.empty() ? "  none\n" : text;
 }
 
 Json DirectionsJson(const std::vector<CalibrationDirection>& directions,
-                    const std::vector<std::string>& names, double scale) {
+                    const std::vector<std::string>& names) {
   Json json = Json::array();
   for (const CalibrationDirection& direction : directions) {
     Json terms = Json::object();
     for (const CalibrationDirection::Term& term : direction.terms) {
       terms[names[static_cast<std::size_t>(term.component)]] = term.coefficient;
     }
-    json.push_back({{"ratio", direction.ratio / scale}, {"terms", terms}});
+    json.push_back({{"ratio", direction.ratio}, {"terms", terms}});
   }
   return json;
 }
@@ -185,11 +185,14 @@ Observability AnalyzeObservability(const FisherInformation& information,
                         .min_observations = options.min_observations,
                         .times_s = options.times_s});
   result.batch = predict({.times_s = options.times_s});
-  result.wide = predict({.prior_scale = kWidePriors});
+  result.wide = predict({.prior_scale = kWidePriors, .at_instants = true});
 
   const CalibrationLayout& layout = information.layout();
   const Eigen::VectorXd priors = layout.PriorSigmas();
   const std::vector<std::string> names = layout.ComponentNames();
+  const WeakSpace wide(result.wide.CalibrationCovariance(), kWidePriors * priors,
+                       kUnobservableRatio);
+  const Eigen::VectorXd unobservable = wide.ComponentRatios();
   for (const CalibrationLayout::Entry& entry : layout.entries()) {
     for (int k = 0; k < entry.size; ++k) {
       const int i = entry.offset + k;
@@ -198,15 +201,14 @@ Observability AnalyzeObservability(const FisherInformation& information,
                                          .prior = priors[i],
                                          .cut = result.cut.history.back().sigmas[i],
                                          .batch = result.batch.history.back().sigmas[i],
-                                         .wide = result.wide.history.back().sigmas[i]};
+                                         .unobservable = unobservable[i]};
       component.verdict = Judge(component);
       result.components.push_back(std::move(component));
     }
   }
   const Eigen::MatrixXd cut = result.cut.CalibrationCovariance();
-  result.unobservable =
-      WeakDirections(result.wide.CalibrationCovariance(), priors, kUnobservableRatio * kWidePriors);
-  result.untold = WeakDirections(cut, priors, std::sqrt(kUntoldVariance));
+  result.unobservable = wide.Directions();
+  result.untold = WeakSpace(cut, priors, std::sqrt(kUntoldVariance)).Directions();
   result.correlated = StrongPairs(cut);
   return result;
 }
@@ -231,21 +233,20 @@ std::string ObservabilityText(const Observability& result) {
   }
   text += Format(
       "  observed: down to %g of the prior or less; weak: to %g; not observed: hardly;\n"
-      "  unobservable: nothing but priors holds it: with priors %g times as wide, more than %g\n"
-      "  times its prior is left\n\n",
-      kWeakRatio, kNotObservedRatio, kWidePriors, kWidePriors * kUnobservableRatio);
+      "  unobservable: part of a combination that nothing but priors holds\n\n",
+      kWeakRatio, kNotObservedRatio);
 
   const std::vector<std::string> names = result.Names();
   text += Format(
-      "combinations that nothing but priors holds (share of a prior %g times as wide that is "
-      "left; in prior sigmas)\n",
+      "combinations that nothing but priors holds: of priors %g times as wide this share is left "
+      "(in prior sigmas)\n",
       kWidePriors);
-  text += DirectionsText(result.unobservable, names, kWidePriors) + "\n";
+  text += DirectionsText(result.unobservable, names) + "\n";
   text += Format(
       "combinations of which more than %g of the prior variance is left, cut tracks (share of the "
       "sigma; in prior sigmas)\n",
       kUntoldVariance);
-  text += DirectionsText(result.untold, names, 1.0) + "\n";
+  text += DirectionsText(result.untold, names) + "\n";
   text +=
       Format("pairs that correlate by more than %g at the end, cut tracks\n", kStrongCorrelation);
   for (const Observability::Pair& pair : result.correlated) {
@@ -277,7 +278,7 @@ nlohmann::ordered_json ObservabilityJson(const Observability& result) {
                           {"prior_sigma", each.prior},
                           {"sigma_cut", each.cut},
                           {"sigma_whole", each.batch},
-                          {"sigma_wide_priors", each.wide},
+                          {"unobservable_share", each.unobservable},
                           {"information_cut", each.CutInformation()},
                           {"information_whole", each.BatchInformation()},
                           {"verdict", VerdictName(each.verdict)}});
@@ -298,13 +299,14 @@ nlohmann::ordered_json ObservabilityJson(const Observability& result) {
           {"thresholds",
            {{"wide_priors", kWidePriors},
             {"unobservable_ratio", kUnobservableRatio},
+            {"unobservable_share", kUnobservableShare},
             {"not_observed_ratio", kNotObservedRatio},
             {"weak_ratio", kWeakRatio},
             {"untold_variance", kUntoldVariance},
             {"strong_correlation", kStrongCorrelation}}},
           {"components", components},
-          {"unobservable", DirectionsJson(result.unobservable, names, kWidePriors)},
-          {"untold", DirectionsJson(result.untold, names, 1.0)},
+          {"unobservable", DirectionsJson(result.unobservable, names)},
+          {"untold", DirectionsJson(result.untold, names)},
           {"correlated", pairs},
           {"cut", PredictionJson(result.cut)},
           {"whole", PredictionJson(result.batch)}};

@@ -10,12 +10,16 @@
 
 namespace duet {
 
-/// The priors of the second look are so many times as wide.
-inline constexpr double kWidePriors = 100.0;
-/// Unobservable: beside priors that are kWidePriors times as wide, more than this share of the
-/// prior's standard deviation is left (ten times what the prior itself said). What such a component
-/// gains, it gains from other priors.
+/// The priors of the second look are so many times as wide: what is left then of a direction is
+/// either a large share of them (nothing but priors holds it) or none to speak of.
+inline constexpr double kWidePriors = 1000.0;
+/// Directions are unobservable where more than this share of the wide priors' standard deviation is
+/// left. Directions that nothing holds have 0.3 to 1 (they may share what is left with biases),
+/// others their standard deviation in wide prior sigmas: below 0.1 wherever it is less than a
+/// hundred of the actual prior's.
 inline constexpr double kUnobservableRatio = 0.1;
+/// A component is unobservable that makes up this share of such a direction.
+inline constexpr double kUnobservableShare = 0.1;
 /// With the priors as they are: the ratio of expected and prior standard deviation.
 inline constexpr double kNotObservedRatio = 0.9;
 inline constexpr double kWeakRatio = 0.5;
@@ -41,7 +45,8 @@ struct Observability {
     double prior = 0.0;  ///< sigma
     double cut = 0.0;    ///< expected sigma at the end, tracks cut at the estimators' window
     double batch = 0.0;  ///< the same, whole tracks
-    double wide = 0.0;   ///< whole tracks and priors kWidePriors times as wide
+    /// Share of a wide prior's sigma that unobservable directions leave to it.
+    double unobservable = 0.0;
     ObservabilityVerdict verdict = ObservabilityVerdict::kObserved;
 
     /// What the measurements say of it, all else eliminated: 1/sigma^2 beyond the prior's.
@@ -77,7 +82,8 @@ struct Observability {
   [[nodiscard]] std::vector<std::string> Named(ObservabilityVerdict verdict) const;
 };
 
-/// Three times through the recording: cut tracks, whole tracks, whole tracks with wide priors.
+/// Three times through the recording: cut tracks; whole tracks; whole tracks with wide priors and
+/// pixels linearized at their states' instants.
 /// `observer` counts the frames of all three.
 [[nodiscard]] Observability AnalyzeObservability(
     const FisherInformation& information, const ObservabilityOptions& options,

@@ -8,18 +8,31 @@
 
 namespace duet {
 
-std::vector<CalibrationDirection> WeakDirections(const Eigen::MatrixXd& covariance,
-                                                 const Eigen::VectorXd& sigmas,
-                                                 double least_ratio) {
-  const Eigen::Index n = sigmas.size();
-  if (n == 0) return {};
-  const Eigen::VectorXd scale = sigmas.cwiseInverse();
-  const Eigen::MatrixXd M = scale.asDiagonal() * covariance * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(M);
+WeakSpace::WeakSpace(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& prior_sigmas,
+                     double least_ratio) {
+  const Eigen::VectorXd scale = prior_sigmas.cwiseInverse();
+  scaled_ = scale.asDiagonal() * covariance * scale.asDiagonal();
+  basis_.resize(0, prior_sigmas.size());
+  if (prior_sigmas.size() == 0) return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled_);
   const Eigen::Index count = (solver.eigenvalues().array() > least_ratio * least_ratio).count();
-  // Rows span the weak space; the reduced echelon form of them, largest pivot first, is sparse
-  // where the space has a sparse basis.
-  Eigen::MatrixXd basis = solver.eigenvectors().rightCols(count).transpose();
+  basis_ = solver.eigenvectors().rightCols(count).transpose();
+  eigenvalues_ = solver.eigenvalues().tail(count);
+}
+
+Eigen::VectorXd WeakSpace::ComponentRatios() const {
+  Eigen::VectorXd variances = Eigen::VectorXd::Zero(basis_.cols());
+  for (Eigen::Index row = 0; row < basis_.rows(); ++row) {
+    variances += eigenvalues_[row] * basis_.row(row).transpose().cwiseAbs2();
+  }
+  return variances.cwiseSqrt();
+}
+
+std::vector<CalibrationDirection> WeakSpace::Directions() const {
+  // Largest pivot first: sparse where the space has a sparse basis.
+  Eigen::MatrixXd basis = basis_;
+  const Eigen::Index count = basis.rows();
+  const Eigen::Index n = basis.cols();
   std::vector<bool> used(static_cast<std::size_t>(count), false);
   std::vector<Eigen::Index> row_of_pivot;
   for (Eigen::Index step = 0; step < count; ++step) {
@@ -52,7 +65,7 @@ std::vector<CalibrationDirection> WeakDirections(const Eigen::MatrixXd& covarian
     v.cwiseAbs().maxCoeff(&largest);
     v /= v[largest];
     CalibrationDirection direction;
-    direction.ratio = std::sqrt(v.dot(M * v) / v.squaredNorm());
+    direction.ratio = std::sqrt(v.dot(scaled_ * v) / v.squaredNorm());
     for (Eigen::Index c = 0; c < n; ++c) {
       if (std::abs(v[c]) >= kSmallestTerm) {
         direction.terms.push_back({static_cast<int>(c), v[c]});

@@ -9,7 +9,7 @@
 
 #include "backends/window/prior.h"
 #include "backends/window/window_linearizer.h"
-#include "test/experiments/observability/observed_simulation.h"
+#include "test/experiments/observability/small_simulation.h"
 
 namespace duet {
 namespace {

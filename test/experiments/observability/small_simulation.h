@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "common/measurement/gauge.h"
 #include "common/measurement/told_errors.h"
 #include "experiments/observability/fisher_information.h"
+#include "experiments/observability/observed_simulation.h"
 #include "experiments/simulation/monte_carlo.h"
 #include "experiments/simulation/simulator.h"
 #include "experiments/simulation/trajectory_library.h"
@@ -50,31 +50,21 @@ struct ObservedSimulation {
 
  private:
   ObservedSimulation(SimulatedRecording simulated, const CalibrationPriors& priors)
-      : recording(std::move(simulated)),
-        motion{.setup = Setup(recording, priors),
-               .start_covariance = StartCovariance(InitializationOptions{}, 1.0),
-               .frames = recording.frames,
-               .states = {},
-               .imu = recording.imu} {
-    for (const TrackFrameSet& frames : recording.frames) {
-      motion.states.push_back(
-          recording.TruthAt(frames.timestamp + ToNanoseconds(motion.setup.rig.t_d_s)));
-    }
-  }
+      : recording(std::move(simulated)), motion(Observe(recording, priors)) {}
 
-  static EstimatorSetup Setup(const SimulatedRecording& recording,
-                              const CalibrationPriors& priors) {
+  static ObservedMotion Observe(const SimulatedRecording& recording,
+                                const CalibrationPriors& priors) {
     SharedOptions shared;
     shared.calibration = priors;
-    EstimatorSetup setup = MakeSetup(recording, shared);
-    setup.rig = recording.true_rig;
+    ObservedMotion motion =
+        ObserveSimulation(recording, shared, StartCovariance(InitializationOptions{}, 1.0));
     const SimulationOptions told;
-    setup.imu_noise = {.gyroscope_density = told.gyroscope_density,
-                       .accelerometer_density = told.accelerometer_density,
-                       .gyroscope_random_walk = told.gyroscope_random_walk,
-                       .accelerometer_random_walk = told.accelerometer_random_walk};
-    setup.shared.pixel_noise_px = 1.0;
-    return setup;
+    motion.setup.imu_noise = {.gyroscope_density = told.gyroscope_density,
+                              .accelerometer_density = told.accelerometer_density,
+                              .gyroscope_random_walk = told.gyroscope_random_walk,
+                              .accelerometer_random_walk = told.accelerometer_random_walk};
+    motion.setup.shared.pixel_noise_px = 1.0;
+    return motion;
   }
 };
 
