@@ -75,20 +75,21 @@ int RunObservability(const CommandLine& line) {
     throw InputError("shared.calibration.imu_frame: " + error);
   }
 
-  const std::vector<InertialState> known = FLAGS_estimate.empty()
-                                               ? StatesOfTruth(recording)
-                                               : StatesOfEstimate(FLAGS_estimate, recording);
+  KnownMotion known = FLAGS_estimate.empty() ? MotionOfTruth(recording)
+                                             : MotionOfEstimate(FLAGS_estimate, recording);
   const std::string source = FLAGS_estimate.empty() ? "truth" : FLAGS_estimate;
   const std::vector<TrackFrameSet> tracked = Tracks(&session);
   if (Interrupted()) return kInterrupted;
 
   ImuBuffer imu;
-  for (const ImuSample& sample : recording.imu) imu.Add(sample);
+  for (const ImuSample& sample : known.readings.empty() ? recording.imu : known.readings) {
+    imu.Add(sample);
+  }
   std::vector<TrackFrameSet> frames;
   std::vector<InertialState> states;
   for (const TrackFrameSet& frame : tracked) {
     const Timestamp instant = frame.timestamp + ToNanoseconds(setup.rig.t_d_s);
-    const std::optional<InertialState> state = StateAt(known, instant, imu, setup);
+    const std::optional<InertialState> state = StateAt(known.states, instant, imu, setup);
     if (!state) continue;
     frames.push_back(frame);
     states.push_back(*state);
@@ -109,7 +110,8 @@ int RunObservability(const CommandLine& line) {
        .start_covariance = StartCovariance(session.configuration.initialization, 1.0),
        .frames = frames,
        .states = std::move(states),
-       .imu = recording.imu});
+       .imu = recording.imu,
+       .readings = std::move(known.readings)});
   if (2 * information.not_triangulated() > information.tracks()) {
     LOG(WARNING) << information.not_triangulated() << " of " << information.tracks()
                  << " tracks have no point that fits the " << source

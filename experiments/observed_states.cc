@@ -12,49 +12,47 @@
 namespace duet {
 namespace {
 
-std::vector<InertialState> StatesOf(const GroundTruth& truth, const Recording& recording,
-                                    bool apply_time_shift) {
-  if (!truth.has_velocities() || !truth.has_biases()) {
-    Recording with_truth = recording;
-    with_truth.truth = truth;
-    return FollowRecording(with_truth, recording.folder.filename().string(),
-                           {.apply_time_shift = apply_time_shift})
-        .states;
+KnownMotion Follow(const Recording& recording, bool apply_time_shift) {
+  RecordedMotion followed = FollowRecording(recording, recording.folder.filename().string(),
+                                            {.apply_time_shift = apply_time_shift});
+  KnownMotion motion{.states = std::move(followed.states)};
+  for (const InertialState& state : motion.states) {
+    const Kinematics k = followed.trajectory->spline().At(state.instant);
+    const ImuRates read = DistortRates(
+        {.omega_B = k.omega_B, .a_B = k.T_GB.R.conjugate() * (k.a_G - recording.g_G())},
+        recording.rig.imu, state.biases);
+    motion.readings.push_back({state.instant, read.omega_B, read.a_B});
   }
-  std::vector<InertialState> states;
-  for (std::size_t i = 0; i < truth.poses.size(); ++i) {
-    const StampedPose& pose = truth.poses[i];
-    states.push_back(
-        {.instant = pose.timestamp,
-         .nav = {.R_GB = pose.T_GB.R, .p_GB = pose.T_GB.p, .v_GB = truth.velocities[i]},
-         .biases = truth.biases[i]});
-  }
-  return states;
+  return motion;
 }
 
 }  // namespace
 
-std::vector<InertialState> StatesOfTruth(const Recording& recording) {
+KnownMotion MotionOfTruth(const Recording& recording) {
   if (!recording.truth) {
     throw InputError(recording.folder.string() +
                      " has no ground truth (state_groundtruth_estimate0/data.csv); expected one, "
                      "or --estimate with the folder of a run");
   }
-  return StatesOf(*recording.truth, recording, /*apply_time_shift=*/true);
+  return Follow(recording, /*apply_time_shift=*/true);
 }
 
-std::vector<InertialState> StatesOfEstimate(const std::string& path, const Recording& recording) {
+KnownMotion MotionOfEstimate(const std::string& path, const Recording& recording) {
   std::error_code ignored;
-  const bool folder = std::filesystem::is_directory(path, ignored);
   std::filesystem::path file = path;
-  if (folder) file /= "states.csv";
+  if (std::filesystem::is_directory(file, ignored)) file /= "states.csv";
+  KnownMotion motion;
   if (file.filename() == "states.csv") {
-    std::vector<InertialState> states = ReadStateTable(ReadTextFile(file), file.string());
-    if (states.empty()) throw InputError(file.string(), 0, "", "has no state");
-    return states;
+    motion.states = ReadStateTable(ReadTextFile(file), file.string());
+    if (motion.states.empty()) throw InputError(file.string(), 0, "", "has no state");
+    return motion;
   }
-  // An estimate's stamps are the IMU's.
-  return StatesOf(ReadTrajectoryFile(file), recording, /*apply_time_shift=*/false);
+  Recording along = recording;
+  along.truth = ReadTrajectoryFile(file);
+  along.truth_file = file.string();
+  motion = Follow(along, /*apply_time_shift=*/false);  // an estimate's stamps are the IMU's
+  motion.readings.clear();
+  return motion;
 }
 
 std::optional<InertialState> StateAt(const std::vector<InertialState>& states, Timestamp instant,

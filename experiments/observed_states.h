@@ -11,16 +11,23 @@
 
 namespace duet {
 
-/// States with velocities and biases along a recording's motion, ascending in time: from its truth
-/// where that has them (EuRoC's state_groundtruth_estimate0, a simulation's), else from its poses
-/// and the IMU (FollowRecording). Throws InputError where there is no truth, or one that the IMU
-/// cannot be laid along.
-[[nodiscard]] std::vector<InertialState> StatesOfTruth(const Recording& recording);
+/// A motion with velocities and biases, at stamps that ascend.
+struct KnownMotion {
+  std::vector<InertialState> states;
+  /// What the IMU would have read along it without noise; empty: not known.
+  std::vector<ImuSample> readings = {};
+};
 
-/// The same from an estimate: a run's folder (its states.csv), a states.csv, or a trajectory in
-/// EuRoC's or TUM's form. Throws InputError.
-[[nodiscard]] std::vector<InertialState> StatesOfEstimate(const std::string& path,
-                                                          const Recording& recording);
+/// From a recording's truth: a spline through its poses, with biases fitted to the IMU
+/// (FollowRecording). Throws InputError where there is no truth, or one that the IMU cannot be laid
+/// along.
+[[nodiscard]] KnownMotion MotionOfTruth(const Recording& recording);
+
+/// From an estimate: the states of a run's folder (its states.csv) or of a states.csv, as they are;
+/// or a trajectory in EuRoC's or TUM's form, with velocities and biases as from a truth. An
+/// estimate's steps are no motion, so that the IMU's own readings stand for the noiseless ones.
+/// Throws InputError.
+[[nodiscard]] KnownMotion MotionOfEstimate(const std::string& path, const Recording& recording);
 
 /// The state at `instant`: the nearest of `states` taken there by the IMU with its biases. Nothing
 /// where the nearest is more than 60 ms away or the IMU does not cover the way.

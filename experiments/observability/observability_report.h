@@ -14,10 +14,10 @@ namespace duet {
 /// either a large share of them (nothing but priors holds it) or none to speak of.
 inline constexpr double kWidePriors = 1000.0;
 /// Directions are unobservable where more than this share of the wide priors' standard deviation is
-/// left. Directions that nothing holds have 0.3 to 1 (they may share what is left with biases),
-/// others their standard deviation in wide prior sigmas: below 0.1 wherever it is less than a
-/// hundred of the actual prior's.
-inline constexpr double kUnobservableRatio = 0.1;
+/// left. Directions that nothing holds have 0.35 to 1 (they may share what is left with biases),
+/// others their standard deviation in wide prior sigmas: below 0.2 wherever the measurements alone
+/// tell them to 200 sigmas of the actual prior.
+inline constexpr double kUnobservableRatio = 0.2;
 /// A component is unobservable that makes up this share of such a direction.
 inline constexpr double kUnobservableShare = 0.1;
 /// With the priors as they are: the ratio of expected and prior standard deviation.
