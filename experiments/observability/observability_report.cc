@@ -162,6 +162,26 @@ std::vector<std::string> Observability::Named(ObservabilityVerdict verdict) cons
   return names;
 }
 
+PredictedCovariance PredictWithWidePriors(const FisherInformation& information,
+                                          const FisherInformation::Observer& observer) {
+  return information.Predict({.prior_scale = kWidePriors, .at_instants = true}, observer);
+}
+
+WeakSpace UnobservableSpace(const PredictedCovariance& wide, const CalibrationLayout& layout) {
+  return {wide.CalibrationCovariance(), kWidePriors * layout.PriorSigmas(), kUnobservableRatio};
+}
+
+std::vector<std::string> UnobservableComponents(const WeakSpace& space,
+                                                const CalibrationLayout& layout) {
+  const std::vector<std::string> names = layout.ComponentNames();
+  const Eigen::VectorXd ratios = space.ComponentRatios();
+  std::vector<std::string> named;
+  for (int i = 0; i < layout.size(); ++i) {
+    if (ratios[i] > kUnobservableShare) named.push_back(names[static_cast<std::size_t>(i)]);
+  }
+  return named;
+}
+
 Observability AnalyzeObservability(const FisherInformation& information,
                                    const ObservabilityOptions& options,
                                    const FisherInformation::Observer& observer) {
@@ -173,25 +193,25 @@ Observability AnalyzeObservability(const FisherInformation& information,
   result.tracks = information.tracks();
   result.not_triangulated = information.not_triangulated();
 
-  int done = 0;
+  int before = 0;
+  const auto count = [&](int frame) {
+    if (observer) observer(before + frame);
+  };
   const auto predict = [&](const InformationOptions& each) {
-    PredictedCovariance predicted = information.Predict(each, [&](int frame) {
-      if (observer) observer(done + frame);
-    });
-    done += information.frames();
+    PredictedCovariance predicted = information.Predict(each, count);
+    before += information.frames();
     return predicted;
   };
   result.cut = predict({.window_frames = options.window_frames,
                         .min_observations = options.min_observations,
                         .times_s = options.times_s});
   result.batch = predict({.times_s = options.times_s});
-  result.wide = predict({.prior_scale = kWidePriors, .at_instants = true});
+  result.wide = PredictWithWidePriors(information, count);
 
   const CalibrationLayout& layout = information.layout();
   const Eigen::VectorXd priors = layout.PriorSigmas();
   const std::vector<std::string> names = layout.ComponentNames();
-  const WeakSpace wide(result.wide.CalibrationCovariance(), kWidePriors * priors,
-                       kUnobservableRatio);
+  const WeakSpace wide = UnobservableSpace(result.wide, layout);
   const Eigen::VectorXd unobservable = wide.ComponentRatios();
   for (const CalibrationLayout::Entry& entry : layout.entries()) {
     for (int k = 0; k < entry.size; ++k) {

@@ -82,6 +82,15 @@ struct Observability {
   [[nodiscard]] std::vector<std::string> Named(ObservabilityVerdict verdict) const;
 };
 
+/// The directions that nothing but priors holds, and the components that they make up.
+[[nodiscard]] WeakSpace UnobservableSpace(const PredictedCovariance& wide,
+                                          const CalibrationLayout& layout);
+[[nodiscard]] std::vector<std::string> UnobservableComponents(const WeakSpace& space,
+                                                              const CalibrationLayout& layout);
+/// How the first of them is had.
+[[nodiscard]] PredictedCovariance PredictWithWidePriors(
+    const FisherInformation& information, const FisherInformation::Observer& observer = nullptr);
+
 /// Three times through the recording: cut tracks; whole tracks; whole tracks with wide priors and
 /// pixels linearized at their states' instants.
 /// `observer` counts the frames of all three.

@@ -35,7 +35,7 @@ struct ObservedSimulation {
     options.duration_s = duration_s;
     options.imu_rate_hz = 100.0;
     options.camera_rate_hz = 5.0;
-    options.max_tracks = 40;
+    options.max_tracks = 30;
     options.mean_track_frames = 15.0;
     options.t_r_s = 0.02;
     options.noise_scale = 0.0;
