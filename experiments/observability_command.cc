@@ -25,6 +25,9 @@ DECLARE_string(estimate);
 namespace duet {
 namespace {
 
+/// Thrown out of the computation when the user interrupts it.
+struct Interruption {};
+
 bool EstimatesAnything(const CalibrationPriors& priors) {
   return priors.T_g.estimated || priors.T_s.estimated || priors.T_a.estimated ||
          priors.p_CB.estimated || priors.R_CB.estimated || priors.intrinsics.estimated ||
@@ -121,8 +124,16 @@ int RunObservability(const CommandLine& line) {
   options.window_frames = session.configuration.backends.msckf.max_clones;
   options.min_observations = session.configuration.backends.msckf.min_observations;
   Progress progress("observability", 3 * information.frames(), "frames", FLAGS_quiet);
-  const Observability result =
-      AnalyzeObservability(information, options, [&](int done) { progress.Update(done); });
+  Observability result;
+  try {
+    result = AnalyzeObservability(information, options, [&](int done) {
+      progress.Update(done);
+      if (Interrupted()) throw Interruption();
+    });
+  } catch (const Interruption&) {
+    progress.Finish("interrupted");
+    return kInterrupted;
+  }
   progress.Finish();
 
   std::printf("%s, states of the %s, %s\n", recording.folder.string().c_str(),

@@ -1,6 +1,7 @@
 #include "experiments/observed_states.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "common/imu/imu_delta.h"

@@ -10,6 +10,8 @@
 #include "backends/window/window_state.h"
 #include "common/imu/imu_delta.h"
 #include "common/measurement/standstill.h"
+#include "common/measurement/triangulation.h"
+#include "common/support/input_error.h"
 #include "common/support/logging.h"
 #include "experiments/observability/information_filter.h"
 
@@ -235,7 +237,11 @@ PredictedCovariance FisherInformation::Predict(const InformationOptions& options
     if (asked || last) {
       while (next_time != options.times_s.end() && time_s >= *next_time - 1e-6) ++next_time;
       result.covariance = filter.Covariance();
-      CHECK_GT(result.covariance.rows(), 0) << "the information is not positive definite";
+      if (result.covariance.rows() == 0) {
+        throw InputError(
+            "shared.calibration: beside these measurements the priors are so wide that the "
+            "information is not positive definite in double precision; expected smaller sigmas");
+      }
       result.history.push_back(
           {time_s, result.covariance.diagonal().tail(layout_.size()).cwiseSqrt()});
     }

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "backends/estimator.h"
@@ -12,8 +11,8 @@
 #include "common/imu/imu_sample.h"
 #include "common/imu/nav_state.h"
 #include "common/measurement/calibration.h"
+#include "common/measurement/measurement_model.h"
 #include "common/measurement/rate_profile.h"
-#include "common/measurement/triangulation.h"
 
 namespace duet {
 
@@ -91,6 +90,7 @@ class FisherInformation {
   /// Integrates, triangulates. CHECKs the contract of ObservedMotion.
   explicit FisherInformation(const ObservedMotion& motion);
 
+  /// Throws InputError where the priors are too wide for double precision. `observer` may throw.
   [[nodiscard]] PredictedCovariance Predict(const InformationOptions& options,
                                             const Observer& observer = nullptr) const;
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "backends/window/normal_equations.h"
 #include "backends/window/window_linearizer.h"

@@ -5,10 +5,14 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <cmath>
 #include <map>
 
 #include "backends/window/prior.h"
 #include "backends/window/window_linearizer.h"
+#include "common/imu/imu_delta.h"
+#include "common/measurement/triangulation.h"
 #include "test/experiments/observability/small_simulation.h"
 
 namespace duet {
@@ -98,7 +102,7 @@ double Difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return (scale.asDiagonal() * (a - b) * scale.asDiagonal()).cwiseAbs().maxCoeff();
 }
 
-// a - b as far as it is negative, in units of b's prior-free standard deviations.
+// Of a - b, in units of b's standard deviations.
 double SmallestEigenvalueOfDifference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   const Eigen::VectorXd scale = b.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd D = scale.asDiagonal() * (a - b) * scale.asDiagonal();
@@ -177,7 +181,6 @@ TEST(FisherInformation, GrowsWithTimeAndNeverShrinks) {
 // Twice the densities, pixel noise, priors and first state's uncertainty: twice the uncertainty.
 TEST(FisherInformation, ScalesWithEveryNoise) {
   SimulationOptions options = ObservedSimulation::Options(4.0);
-  options.world = kBoxWorld;
   const ObservedSimulation simulation(options, AllEstimated());
   ObservedMotion twice = simulation.motion;
   twice.setup.imu_noise.gyroscope_density *= 2.0;
