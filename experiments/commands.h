@@ -16,5 +16,6 @@ namespace duet {
 [[nodiscard]] Command TrackErrorCommand();
 [[nodiscard]] Command AllanCommand();
 [[nodiscard]] Command AblateCommand();
+[[nodiscard]] Command ObservabilityCommand();
 
 }  // namespace duet

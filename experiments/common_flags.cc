@@ -3,7 +3,7 @@
 #include <gflags/gflags.h>
 
 DEFINE_string(dataset, "", "Recording in ASL form (EuRoC): the folder that holds mav0, or mav0.");
-DEFINE_string(out, "", "Folder to write; must not exist yet.");
+DEFINE_string(out, "", "Folder (duet observability: file) to write; must not exist yet.");
 DEFINE_string(config, "", "Configuration file (YAML); later ones overrule earlier ones.");
 DEFINE_string(set, "", "Sets one key of the configuration, e.g. msckf.window=15; see duet config.");
 DEFINE_string(init, "auto",

@@ -12,8 +12,10 @@
 #include "experiments/exit_status.h"
 
 DEFINE_string(groundtruth, "", "The truth: a trajectory in EuRoC's form or TUM's.");
-DEFINE_string(estimate, "",
-              "An estimated trajectory in either form; further files may follow without the flag.");
+DEFINE_string(
+    estimate, "",
+    "An estimated trajectory in either form; further files may follow without the flag (duet "
+    "observability: or a run's folder, for its states; one only).");
 DEFINE_string(json, "", "Write the evaluation to this file too; it must not exist yet.");
 
 namespace duet {

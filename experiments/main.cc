@@ -18,8 +18,8 @@ int Fail(ExitStatus status, const char* what) {
 int Run(int argc, char** argv) {
   try {
     return Dispatch({CompareCommand(), TrackCommand(), RunCommand(), EvaluateCommand(),
-                     CheckCommand(), SimulateCommand(), MonteCarloCommand(), TrackErrorCommand(),
-                     AllanCommand(), AblateCommand(), ConfigCommand()},
+                     CheckCommand(), ObservabilityCommand(), AblateCommand(), SimulateCommand(),
+                     MonteCarloCommand(), TrackErrorCommand(), AllanCommand(), ConfigCommand()},
                     argc, argv);
   } catch (const InputError& error) {
     return Fail(kBadInput, error.what());

@@ -10,9 +10,9 @@ namespace {
 
 constexpr int kMaxFrames = 64;
 
-// L with L L' = V (3 x 3), by Cholesky in the order alpha, beta, rho; directions without
-// information get no pivot (a row of zeros in L^-1).
-Eigen::Matrix3d InverseCholesky(const Eigen::Matrix3d& V) {
+}  // namespace
+
+Eigen::Matrix3d LandmarkInverseCholesky(const Eigen::Matrix3d& V) {
   Eigen::Vector3d scale;
   for (int i = 0; i < 3; ++i) scale[i] = V(i, i) > 0.0 ? 1.0 / std::sqrt(V(i, i)) : 0.0;
   const Eigen::Matrix3d M = scale.asDiagonal() * V * scale.asDiagonal();
@@ -32,8 +32,6 @@ Eigen::Matrix3d InverseCholesky(const Eigen::Matrix3d& V) {
   }
   return inverse * scale.asDiagonal();
 }
-
-}  // namespace
 
 NormalEquations::NormalEquations(int frame_count, const CalibrationLayout& layout)
     : layout_(&layout), frame_count_(frame_count), calibration_(kFrameSize * frame_count) {
@@ -150,7 +148,7 @@ void NormalEquations::AddLandmarkOf(int anchor, std::span<const LinearObservatio
   }
 
   // Schur complement of the landmark: with Y = L^-1 W, H -= Y'Y and b -= Y'(L^-1 b_l).
-  const Eigen::Matrix3d L_inverse = InverseCholesky(V);
+  const Eigen::Matrix3d L_inverse = LandmarkInverseCholesky(V);
   const Eigen::Vector3d y_l = L_inverse * b_l;
   W_c = L_inverse * W_c;
   for (int f = 0; f < frame_count_; ++f) {

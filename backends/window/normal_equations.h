@@ -19,6 +19,10 @@ struct LinearObservation {
   ReprojectionJacobians J;
 };
 
+/// L^-1 with L L' = V of a landmark (3 x 3), by Cholesky in the order alpha, beta, rho; directions
+/// without information, by the rank rule of marginalization.h, get no pivot (a row of zeros).
+[[nodiscard]] Eigen::Matrix3d LandmarkInverseCholesky(const Eigen::Matrix3d& V);
+
 /// H = sum of J'J and b = sum of J'r over the window's error, landmarks eliminated on the way in:
 ///
 ///            frame 0 | frame 1 | ... | calibration

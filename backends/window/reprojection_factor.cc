@@ -9,8 +9,7 @@ ObservingState StateOf(const ReprojectionSetup& setup, const WindowPoint& point,
           setup.off_instant ? &frames[frame].rates : nullptr};
 }
 
-// d uv / d one block of the calibration; what a block does in both roles (C0 as the anchor's camera
-// and as the observing one) adds up.
+// d uv / d one block of the calibration.
 template <class Block>
 void SetCalibrationJacobian(const ObservationJacobians& J, const CalibrationLayout::Entry& entry,
                             int camera, Block out) {
@@ -46,6 +45,13 @@ void SetCalibrationJacobian(const ObservationJacobians& J, const CalibrationLayo
 
 }  // namespace
 
+void CalibrationJacobian(const ObservationJacobians& J, const CalibrationLayout& layout, int camera,
+                         Eigen::Ref<Eigen::Matrix<double, 2, Eigen::Dynamic>> out) {
+  for (const auto& entry : layout.entries()) {
+    SetCalibrationJacobian(J, entry, camera, out.middleCols(entry.offset, entry.size));
+  }
+}
+
 bool EvaluateReprojection(const ReprojectionSetup& setup, const WindowPoint& point,
                           const std::vector<WindowFrame>& frames, int anchor,
                           const LandmarkObservation& observation, const InverseDepth& landmark,
@@ -78,11 +84,8 @@ bool EvaluateReprojection(const ReprojectionSetup& setup, const WindowPoint& poi
   jacobians->anchor = weight * J.anchor;
   jacobians->state = weight * J.state;
   jacobians->calibration.resize(2, layout.size());
-  for (const auto& entry : layout.entries()) {
-    auto block = jacobians->calibration.middleCols(entry.offset, entry.size);
-    SetCalibrationJacobian(J, entry, observation.pixel.camera, block);
-    block *= weight;
-  }
+  CalibrationJacobian(J, layout, observation.pixel.camera, jacobians->calibration);
+  jacobians->calibration *= weight;
   return true;
 }
 

@@ -24,6 +24,11 @@ struct ReprojectionJacobians {
   Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2, kMaxCalibration> calibration;
 };
 
+/// d uv / d calibration over `layout`'s components, for a pixel of `camera`: what a block does in
+/// both roles (C0 as the anchor's camera and as the observing one) adds up.
+void CalibrationJacobian(const ObservationJacobians& J, const CalibrationLayout& layout, int camera,
+                         Eigen::Ref<Eigen::Matrix<double, 2, Eigen::Dynamic>> out);
+
 /// r = (predicted - measured) / pixel_noise, by the shared measurement model (PredictPixel).
 /// False where the point does not lie in front of the camera.
 [[nodiscard]] bool EvaluateReprojection(const ReprojectionSetup& setup, const WindowPoint& point,
