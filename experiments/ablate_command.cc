@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 
 #include "common/measurement/gauge.h"
 #include "common/measurement/told_errors.h"
@@ -15,6 +16,7 @@
 #include "experiments/common_flags.h"
 #include "experiments/exit_status.h"
 #include "experiments/interrupt.h"
+#include "experiments/observability/observed_simulation.h"
 #include "experiments/progress.h"
 #include "experiments/record_folder.h"
 #include "experiments/seed_range.h"
@@ -120,43 +122,71 @@ std::vector<AblationCell> RunPlan(const AblationPlan& plan, const AblationRunner
   return cells;
 }
 
-std::vector<AblationCell> OnSimulation(const CommandLine& line, ConfigSources* sources,
-                                       AblationPlan* plan) {
-  for (const std::string& file : line.All("config")) sources->AddFile(file);
-  for (const std::string& assignment : line.All("set")) sources->AddOverride(assignment);
-  MonteCarloOptions options;
+/// Everything a command line asks for, and what came of it.
+struct Ablation {
+  Session session;  ///< of a recording; its configuration alone for a simulation
+  MonteCarloOptions simulation;
+  AblationPlan plan;
+  std::vector<AblationCell> cells;
+};
+
+void RunOnSimulation(const CommandLine& line, Ablation* ablation) {
+  ConfigSources& sources = ablation->session.sources;
+  for (const std::string& file : line.All("config")) sources.AddFile(file);
+  for (const std::string& assignment : line.All("set")) sources.AddOverride(assignment);
+  MonteCarloOptions& options = ablation->simulation;
   options.simulation = SimulationPreset(FLAGS_simulate);
-  sources->Read("simulation", &options.simulation);
-  Configuration configuration;
-  configuration.Read(sources);
+  sources.Read("simulation", &options.simulation);
+  Configuration& configuration = ablation->session.configuration;
+  configuration.Read(&sources);
   options.shared = configuration.shared;
   options.start = configuration.initialization;
-  *plan = ReadPlan(configuration.shared);
-  return RunPlan(*plan,
-                 [&](const std::string& estimator, const CalibrationPriors& priors, int seed) {
-                   MonteCarloOptions of_run = options;
-                   of_run.shared.calibration = priors;
-                   of_run.told_from_priors = false;
-                   return RunOnce(of_run, seed, [&](const EstimatorSetup& setup) {
-                     return MakeEstimator(estimator, setup, configuration.backends);
-                   });
-                 });
+  options.told_from_priors = false;
+  ablation->plan = ReadPlan(configuration.shared);
+  ablation->cells = RunPlan(
+      ablation->plan, [&](const std::string& estimator, const CalibrationPriors& priors, int seed) {
+        MonteCarloOptions of_run = options;
+        of_run.shared.calibration = priors;
+        return RunOnce(of_run, seed, [&](const EstimatorSetup& setup) {
+          return MakeEstimator(estimator, setup, configuration.backends);
+        });
+      });
 }
 
-std::vector<AblationCell> OnRecording(const CommandLine& line, Session* session,
-                                      AblationPlan* plan) {
-  *session = OpenSession(line, FLAGS_dataset, FLAGS_tracks);
-  if (!session->recording.truth) {
-    throw InputError(session->recording.folder.string() +
+// What the first seed's motion allows: the Cramer-Rao bound with tracks cut at the estimator's
+// window (duet observability).
+Eigen::VectorXd PredictSigma(const Ablation& ablation, const AblationCell& cell) {
+  if (cell.variant.estimated.empty()) return {};
+  MonteCarloOptions options = ablation.simulation;
+  options.simulation.seed = ablation.plan.first_seed;
+  SharedOptions shared = options.shared;
+  shared.calibration = PriorsOf(cell.variant, ablation.plan.priors);
+  const SimulatedRecording recording = Simulate(options.simulation);
+  const FisherInformation information(
+      ObserveSimulation(recording, shared, StartCovariance(options.start, 1.0)));
+  const BackendOptions& backends = ablation.session.configuration.backends;
+  const bool filter = cell.estimator == "msckf";
+  const PredictedCovariance predicted = information.Predict(
+      {.window_frames = filter ? backends.msckf.max_clones : backends.window.max_frames,
+       .min_observations = filter ? backends.msckf.min_observations : 2});
+  return predicted.CalibrationCovariance().diagonal().cwiseSqrt();
+}
+
+void RunOnRecording(const CommandLine& line, Ablation* ablation) {
+  Session& session = ablation->session;
+  session = OpenSession(line, FLAGS_dataset, FLAGS_tracks);
+  if (!session.recording.truth) {
+    throw InputError(session.recording.folder.string() +
                      ": has no ground truth; an ablation measures against it");
   }
-  *plan = ReadPlan(session->configuration.shared);
-  const std::vector<TrackFrameSet> frames = TracksOf(*session, FLAGS_quiet);
-  if (frames.empty()) return {};
-  return RunPlan(*plan, [&](const std::string& estimator, CalibrationPriors priors, int seed) {
-    priors.told_errors_seed = seed;
-    return RunRecorded(*session, frames, estimator, priors);
-  });
+  ablation->plan = ReadPlan(session.configuration.shared);
+  const std::vector<TrackFrameSet> frames = TracksOf(session, FLAGS_quiet);
+  if (frames.empty()) return;
+  ablation->cells = RunPlan(ablation->plan,
+                            [&](const std::string& estimator, CalibrationPriors priors, int seed) {
+                              priors.told_errors_seed = seed;
+                              return RunRecorded(session, frames, estimator, priors);
+                            });
 }
 
 // The perturbation in force as a file that --perturb takes.
@@ -176,24 +206,27 @@ int RunAblate(const CommandLine& line) {
   RequireAbsent(FLAGS_out);
   LogCapture log(FLAGS_quiet);
   RecordFolder record(FLAGS_out, line, log);
-  Session session;
-  AblationPlan plan;
   const bool simulated = FLAGS_dataset.empty();
-  const std::vector<AblationCell> cells =
-      simulated ? OnSimulation(line, &session.sources, &plan) : OnRecording(line, &session, &plan);
+  Ablation ablation;
+  simulated ? RunOnSimulation(line, &ablation) : RunOnRecording(line, &ablation);
+  const std::vector<AblationCell>& cells = ablation.cells;
   if (cells.empty()) return kInterrupted;
-  const auto no_prediction = [](const AblationVariant&) { return Eigen::VectorXd(); };
-  const std::string text = AblationText(cells, simulated, no_prediction);
+  std::map<const AblationCell*, Eigen::VectorXd> predictions;
+  for (const AblationCell& cell : cells) {
+    if (simulated) predictions[&cell] = PredictSigma(ablation, cell);
+  }
+  const PredictedSigma predicted = [&](const AblationCell& cell) { return predictions[&cell]; };
+  const std::string text = AblationText(cells, simulated, predicted);
   WriteTextFile(record.path() / "ablation.txt", text);
   WriteTextFile(record.path() / "ablation.json",
-                AblationJson(cells, simulated, no_prediction).dump(2) + "\n");
-  WriteTextFile(record.path() / "perturbation.yaml", PerturbationYaml(plan.priors));
+                AblationJson(cells, simulated, predicted).dump(2) + "\n");
+  WriteTextFile(record.path() / "perturbation.yaml", PerturbationYaml(ablation.plan.priors));
   WriteTextFile(record.path() / "runs.csv", AblationRunsCsv(cells));
   WriteTextFile(record.path() / "calibration.csv", AblationCurvesCsv(cells));
   record.manifest()["states"] = FLAGS_states;
   record.manifest()["seeds"] = FLAGS_seeds;
-  if (!simulated) record.manifest()["dataset"] = DescribeRecording(session.recording);
-  record.Commit(session.sources);
+  if (!simulated) record.manifest()["dataset"] = DescribeRecording(ablation.session.recording);
+  record.Commit(ablation.session.sources);
   std::fputs(text.c_str(), stdout);
   for (const AblationCell& cell : cells) {
     for (const MonteCarloRun& run : cell.runs) {

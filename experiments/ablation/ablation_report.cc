@@ -52,7 +52,7 @@ CellSummary SummarizeCell(const AblationCell& cell, bool consistency,
     }
   }
   summary.calibration =
-      SummarizeCalibrationOfRuns(cell.runs, predicted_sigma(cell.variant), further_p_values);
+      SummarizeCalibrationOfRuns(cell.runs, predicted_sigma(cell), further_p_values);
   return summary;
 }
 

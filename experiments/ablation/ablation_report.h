@@ -10,9 +10,9 @@ namespace duet {
 
 /// The tables of an ablation: accuracy, consistency and cost of every cell, then, for every cell
 /// that estimates something, its calibration at the end. `consistency`: NEES is claimed of the pose
-/// (simulation only). `predicted_sigma` is looked up for a variant's name; empty where there is
-/// no prediction.
-using PredictedSigma = std::function<Eigen::VectorXd(const AblationVariant& variant)>;
+/// (simulation only). `predicted_sigma`: what the motion allows this estimator's cell at the end,
+/// over its calibration's components; empty where there is no prediction.
+using PredictedSigma = std::function<Eigen::VectorXd(const AblationCell& cell)>;
 [[nodiscard]] std::string AblationText(const std::vector<AblationCell>& cells, bool consistency,
                                        const PredictedSigma& predicted_sigma);
 /// The same as JSON.
