@@ -93,7 +93,10 @@ void NormalEquations::AddLandmarkOf(int anchor, std::span<const LinearObservatio
   using FrameRows = Eigen::Matrix<double, 2, kSize>;
   Eigen::MatrixXd& H = sum_.H;
   Eigen::VectorXd& b = sum_.b;
-  const int c_size = layout_->size();
+  // Pixels say nothing of the T matrices, which come first.
+  const int skipped = static_cast<int>(layout_->imu_columns().size());
+  const int c_size = layout_->size() - skipped;
+  const int c = calibration_ + skipped;
 
   std::array<Eigen::Matrix<double, 3, kSize>, kMaxFrames> W;  // landmark x frame
   std::array<bool, kMaxFrames> seen{};
@@ -118,6 +121,7 @@ void NormalEquations::AddLandmarkOf(int anchor, std::span<const LinearObservatio
     V.noalias() += J_l.transpose() * J_l;
     b_l.noalias() += J_l.transpose() * o.r;
 
+    const auto J_c = o.J.calibration.rightCols(c_size);
     FrameRows J_f = o.J.state.template leftCols<kSize>();
     if (f == anchor) {
       J_f.template leftCols<6>() += o.J.anchor;
@@ -130,20 +134,17 @@ void NormalEquations::AddLandmarkOf(int anchor, std::span<const LinearObservatio
       H.block<kSize, kSize>(kFrameSize * anchor, kFrameSize * f).noalias() += J_a.transpose() * J_f;
       b.segment<kSize>(kFrameSize * anchor).noalias() += J_a.transpose() * o.r;
       if (c_size > 0) {
-        H.block(kFrameSize * anchor, calibration_, kSize, c_size).noalias() +=
-            J_a.transpose() * o.J.calibration;
+        H.block(kFrameSize * anchor, c, kSize, c_size).noalias() += J_a.transpose() * J_c;
       }
     }
     W[f].noalias() += J_l.transpose() * J_f;
     H.block<kSize, kSize>(kFrameSize * f, kFrameSize * f).noalias() += J_f.transpose() * J_f;
     b.segment<kSize>(kFrameSize * f).noalias() += J_f.transpose() * o.r;
     if (c_size > 0) {
-      H.block(kFrameSize * f, calibration_, kSize, c_size).noalias() +=
-          J_f.transpose() * o.J.calibration;
-      H.block(calibration_, calibration_, c_size, c_size).noalias() +=
-          o.J.calibration.transpose() * o.J.calibration;
-      b.segment(calibration_, c_size).noalias() += o.J.calibration.transpose() * o.r;
-      W_c.noalias() += J_l.transpose() * o.J.calibration;
+      H.block(kFrameSize * f, c, kSize, c_size).noalias() += J_f.transpose() * J_c;
+      H.block(c, c, c_size, c_size).noalias() += J_c.transpose() * J_c;
+      b.segment(c, c_size).noalias() += J_c.transpose() * o.r;
+      W_c.noalias() += J_l.transpose() * J_c;
     }
   }
 
@@ -162,12 +163,12 @@ void NormalEquations::AddLandmarkOf(int anchor, std::span<const LinearObservatio
     }
     b.segment<kSize>(kFrameSize * f).noalias() -= W[f].transpose() * y_l;
     if (c_size > 0) {
-      H.block(kFrameSize * f, calibration_, kSize, c_size).noalias() -= W[f].transpose() * W_c;
+      H.block(kFrameSize * f, c, kSize, c_size).noalias() -= W[f].transpose() * W_c;
     }
   }
   if (c_size > 0) {
-    H.block(calibration_, calibration_, c_size, c_size).noalias() -= W_c.transpose() * W_c;
-    b.segment(calibration_, c_size).noalias() -= W_c.transpose() * y_l;
+    H.block(c, c, c_size, c_size).noalias() -= W_c.transpose() * W_c;
+    b.segment(c, c_size).noalias() -= W_c.transpose() * y_l;
   }
 }
 

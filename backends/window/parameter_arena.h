@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "backends/window/calibration_group.h"
 #include "backends/window/window_state.h"
 
 namespace duet {
@@ -13,7 +14,7 @@ namespace duet {
 /// landmarks (Ceres 2.1 orders parameter blocks by address; so its order is ours):
 ///
 ///   frame i: x y z w of R_GB | p_GB | v_GB | b_g b_a,   then the blocks of the calibration layout
-///   (R_CB as x y z w), then alpha beta rho of each landmark
+///   (R_CB as x y z w) in groups that are one parameter each, then alpha beta rho of each landmark
 ///
 /// As Ceres's evaluation callback it unpacks them into a WindowPoint once for every evaluation,
 /// with the lift of each rotation: MinusJacobian (3 x 4) at its value, which turns a Jacobian over
@@ -22,7 +23,8 @@ class ParameterArena final : public ceres::EvaluationCallback {
  public:
   using Lift = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
 
-  explicit ParameterArena(const CalibrationLayout& layout) : layout_(&layout) {}
+  explicit ParameterArena(const CalibrationLayout& layout)
+      : layout_(&layout), groups_(GroupCalibration(layout)) {}
 
   /// Makes room; earlier pointers end.
   void Resize(int frame_count, int landmark_count);
@@ -37,6 +39,8 @@ class ParameterArena final : public ceres::EvaluationCallback {
   [[nodiscard]] double* velocity(int frame) { return pose(frame) + 7; }
   [[nodiscard]] double* biases(int frame) { return pose(frame) + 10; }
   [[nodiscard]] double* calibration(int entry) { return &values_[calibration_[entry]]; }
+  [[nodiscard]] const std::vector<CalibrationGroup>& groups() const { return groups_; }
+  [[nodiscard]] double* group(int index) { return calibration(groups_[index].first_entry); }
   [[nodiscard]] double* landmark(int index) { return &values_[landmarks_ + 3 * index]; }
 
   [[nodiscard]] const WindowPoint& point() const { return point_; }
@@ -47,6 +51,7 @@ class ParameterArena final : public ceres::EvaluationCallback {
   static constexpr int kFrameDoubles = 16;
 
   const CalibrationLayout* layout_;
+  std::vector<CalibrationGroup> groups_;
   int frame_count_ = 0;
   int landmarks_ = 0;
   std::vector<int> calibration_;

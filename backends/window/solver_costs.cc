@@ -20,9 +20,25 @@ void WritePose(const Eigen::MatrixBase<Derived>& J, const ParameterArena::Lift& 
   map.template rightCols<3>() = J.template rightCols<3>();
 }
 
-bool IsRotation(const CostBlock& block, const SolverContext& context) {
-  return block.kind == Kind::kCalibration &&
-         context.layout->entries()[block.index].block == CalibrationBlock::kExtrinsicRotation;
+// Writes d r / d a group's numbers from d r / d its error.
+template <class Derived>
+void WriteGroup(const Eigen::MatrixBase<Derived>& J, const CalibrationGroup& group,
+                const SolverContext& context, double* out) {
+  Eigen::Map<Eigen::Matrix<double, Derived::RowsAtCompileTime, Eigen::Dynamic, Eigen::RowMajor>>
+      map(out, J.rows(), group.ambient_size);
+  int number = 0;
+  for (int e = group.first_entry; e < group.first_entry + group.entry_count; ++e) {
+    const CalibrationLayout::Entry& entry = context.layout->entries()[e];
+    const int component = entry.offset - group.offset;
+    if (entry.block == CalibrationBlock::kExtrinsicRotation) {
+      map.template middleCols<4>(number) =
+          J.template middleCols<3>(component) * context.arena->calibration_lift(e);
+      number += 4;
+    } else {
+      map.middleCols(number, entry.size) = J.middleCols(component, entry.size);
+      number += entry.size;
+    }
+  }
 }
 
 // Declares the blocks to Ceres and lists their memory.
@@ -36,22 +52,22 @@ void Declare(const std::vector<CostBlock>& blocks, const SolverContext& context,
   }
 }
 
-// Which camera-side blocks of the calibration a pixel of `camera` depends on. Where it was seen in
-// the anchor's own frame by the anchor's camera, the extrinsics cancel.
-bool DependsOn(const CalibrationLayout::Entry& e, const LandmarkObservation& o) {
-  switch (e.block) {
-    case CalibrationBlock::kExtrinsicTranslation:
-    case CalibrationBlock::kExtrinsicRotation:
-      return e.camera == 0 || e.camera == o.pixel.camera;
-    case CalibrationBlock::kIntrinsics:
-    case CalibrationBlock::kDistortion:
-      return e.camera == o.pixel.camera;
-    case CalibrationBlock::kTimeOffset:
-    case CalibrationBlock::kReadoutTime:
-      return true;
-    default:
-      return false;
+// The groups of the calibration that an IMU factor depends on, or a pixel.
+void AddGroups(const SolverContext& context, bool of_imu, std::vector<CostBlock>* blocks) {
+  const std::vector<CalibrationGroup>& groups = context.arena->groups();
+  for (int g = 0; g < static_cast<int>(groups.size()); ++g) {
+    if (IsImuBlock(context.layout->entries()[groups[g].first_entry].block) == of_imu) {
+      blocks->push_back({Kind::kCalibration, g});
+    }
   }
+}
+
+// The group that an entry of the layout belongs to.
+int GroupOf(int entry, const SolverContext& context) {
+  const std::vector<CalibrationGroup>& groups = context.arena->groups();
+  int g = 0;
+  while (entry >= groups[g].first_entry + groups[g].entry_count) ++g;
+  return g;
 }
 
 }  // namespace
@@ -66,7 +82,7 @@ double* BlockMemory(const CostBlock& block, const SolverContext& context) {
     case Kind::kBiases:
       return arena.biases(block.index);
     case Kind::kCalibration:
-      return arena.calibration(block.index);
+      return arena.group(block.index);
     case Kind::kLandmark:
       return arena.landmark(block.index) + (context.inverse_depth_only ? 2 : 0);
   }
@@ -83,7 +99,7 @@ int BlockSize(const CostBlock& block, const SolverContext& context) {
     case Kind::kBiases:
       return 6;
     case Kind::kCalibration:
-      return IsRotation(block, context) ? 4 : context.layout->entries()[block.index].size;
+      return context.arena->groups()[block.index].ambient_size;
     case Kind::kLandmark:
       return context.inverse_depth_only ? 1 : 3;
   }
@@ -107,11 +123,7 @@ void ReprojectionCost::Reset(const SolverContext* context, int landmark_index, i
     blocks_.push_back({Kind::kPose, observation.frame});
   }
   if (context->reprojection.off_instant) blocks_.push_back({Kind::kVelocity, observation.frame});
-  for (int e = 0; e < static_cast<int>(context->layout->entries().size()); ++e) {
-    if (DependsOn(context->layout->entries()[e], observation)) {
-      blocks_.push_back({Kind::kCalibration, e});
-    }
-  }
+  AddGroups(*context, false, &blocks_);
   set_num_residuals(2);
   Declare(blocks_, *context, mutable_parameter_block_sizes(), parameters);
 }
@@ -163,14 +175,9 @@ bool ReprojectionCost::Evaluate(double const* const* parameters, double* residua
         JacobianMap<2, 3>{jacobians[k]} = J.state.rightCols<3>();
         break;
       case Kind::kCalibration: {
-        const auto& entry = context_->layout->entries()[block.index];
-        if (IsRotation(block, *context_)) {
-          JacobianMap<2, 4>{jacobians[k]} =
-              J.calibration.middleCols<3>(entry.offset) * arena.calibration_lift(block.index);
-        } else {
-          JacobianMap<2, Eigen::Dynamic>(jacobians[k], 2, entry.size) =
-              J.calibration.middleCols(entry.offset, entry.size);
-        }
+        const CalibrationGroup& group = arena.groups()[block.index];
+        WriteGroup(J.calibration.middleCols(group.offset, group.size), group, *context_,
+                   jacobians[k]);
         break;
       }
       case Kind::kBiases:
@@ -189,9 +196,7 @@ void ImuCost::Reset(const SolverContext* context, int frame, std::vector<double*
     blocks_.push_back({Kind::kVelocity, f});
     blocks_.push_back({Kind::kBiases, f});
   }
-  for (int e = 0; e < static_cast<int>(context->layout->entries().size()); ++e) {
-    if (IsImuBlock(context->layout->entries()[e].block)) blocks_.push_back({Kind::kCalibration, e});
-  }
+  AddGroups(*context, true, &blocks_);
   set_num_residuals(15);
   Declare(blocks_, *context, mutable_parameter_block_sizes(), parameters);
 }
@@ -229,12 +234,9 @@ bool ImuCost::Evaluate(double const* const* /*parameters*/, double* residuals,
         JacobianMap<15, 6>{jacobians[k]} = W * J_state.middleCols<6>(kBiasesOffset);
         break;
       case Kind::kCalibration: {
-        const auto& entry = context_->layout->entries()[block.index];
-        Eigen::Map<Eigen::Matrix<double, 15, Eigen::Dynamic, Eigen::RowMajor>> J_block(
-            jacobians[k], 15, entry.size);
-        for (int c = 0; c < entry.size; ++c) {
-          J_block.col(c) = W * J.J_T.col(context_->layout->imu_columns()[entry.offset + c]);
-        }
+        const Eigen::Matrix<double, 15, Eigen::Dynamic, Eigen::ColMajor, 15, 27> J_T =
+            W * J.J_T(Eigen::all, context_->layout->imu_columns());
+        WriteGroup(J_T, arena.groups()[block.index], *context_, jacobians[k]);
         break;
       }
       case Kind::kLandmark:
@@ -281,16 +283,29 @@ void PriorCost::Reset(const SolverContext* context, const WindowPrior* prior,
                       std::vector<double*>* parameters) {
   context_ = context;
   prior_ = prior;
-  std::vector<CostBlock> blocks;
+  blocks_.clear();
   for (const PriorBlock& block : prior->blocks) {
-    const Kind kind = block.kind == PriorBlock::Kind::kPose       ? Kind::kPose
-                      : block.kind == PriorBlock::Kind::kVelocity ? Kind::kVelocity
-                      : block.kind == PriorBlock::Kind::kBiases   ? Kind::kBiases
-                                                                  : Kind::kCalibration;
-    blocks.push_back({kind, block.index});
+    switch (block.kind) {
+      case PriorBlock::Kind::kPose:
+        blocks_.push_back({Kind::kPose, block.index});
+        break;
+      case PriorBlock::Kind::kVelocity:
+        blocks_.push_back({Kind::kVelocity, block.index});
+        break;
+      case PriorBlock::Kind::kBiases:
+        blocks_.push_back({Kind::kBiases, block.index});
+        break;
+      case PriorBlock::Kind::kCalibration: {
+        const CostBlock group{Kind::kCalibration, GroupOf(block.index, *context)};
+        const bool new_group = blocks_.empty() || blocks_.back().kind != Kind::kCalibration ||
+                               blocks_.back().index != group.index;
+        if (new_group) blocks_.push_back(group);
+        break;
+      }
+    }
   }
   set_num_residuals(static_cast<int>(prior->root.J.rows()));
-  Declare(blocks, *context, mutable_parameter_block_sizes(), parameters);
+  Declare(blocks_, *context, mutable_parameter_block_sizes(), parameters);
   deviation_.resize(prior->root.J.cols());
 }
 
@@ -312,31 +327,44 @@ bool PriorCost::Evaluate(double const* const* /*parameters*/, double* residuals,
   r.noalias() += J * deviation_;
   if (jacobians == nullptr) return true;
 
+  // The true Jacobian of a rotation's deviation is the inverse left Jacobian.
   column = 0;
-  for (std::size_t k = 0; k < prior_->blocks.size(); ++k) {
-    const PriorBlock& block = prior_->blocks[k];
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    const CostBlock& block = blocks_[k];
+    if (block.kind == Kind::kCalibration) {
+      const CalibrationGroup& group = arena.groups()[block.index];
+      group_J_.setZero(J.rows(), group.size);
+      for (; next < prior_->blocks.size(); ++next) {
+        const PriorBlock& part = prior_->blocks[next];
+        if (GroupOf(part.index, *context_) != block.index) break;
+        const CalibrationLayout::Entry& entry = context_->layout->entries()[part.index];
+        auto out = group_J_.middleCols(entry.offset - group.offset, entry.size);
+        if (entry.block == CalibrationBlock::kExtrinsicRotation) {
+          out.noalias() =
+              J.middleCols<3>(column) * LeftJacobianInverse(deviation_.segment<3>(column));
+        } else {
+          out = J.middleCols(column, entry.size);
+        }
+        column += entry.size;
+      }
+      if (jacobians[k] != nullptr) WriteGroup(group_J_, group, *context_, jacobians[k]);
+      continue;
+    }
     const int first = column;
-    column += block.size;
+    const int size = prior_->blocks[next++].size;
+    column += size;
     if (jacobians[k] == nullptr) continue;
-    const bool pose = block.kind == PriorBlock::Kind::kPose;
-    const bool rotation = block.kind == PriorBlock::Kind::kCalibration &&
-                          IsRotation({Kind::kCalibration, block.index}, *context_);
-    if (!pose && !rotation) {
-      JacobianMap<Eigen::Dynamic, Eigen::Dynamic>(jacobians[k], J.rows(), block.size) =
-          J.middleCols(first, block.size);
+    if (block.kind != Kind::kPose) {
+      JacobianMap<Eigen::Dynamic, Eigen::Dynamic>(jacobians[k], J.rows(), size) =
+          J.middleCols(first, size);
       continue;
     }
     const ParameterArena::Lift lift =
-        LeftJacobianInverse(deviation_.segment<3>(first)) *
-        (pose ? arena.frame_lift(block.index) : arena.calibration_lift(block.index));
-    if (pose) {
-      JacobianMap<Eigen::Dynamic, 7> map(jacobians[k], J.rows(), 7);
-      map.leftCols<4>().noalias() = J.middleCols<3>(first) * lift;
-      map.rightCols<3>() = J.middleCols<3>(first + 3);
-    } else {
-      JacobianMap<Eigen::Dynamic, 4>(jacobians[k], J.rows(), 4).noalias() =
-          J.middleCols<3>(first) * lift;
-    }
+        LeftJacobianInverse(deviation_.segment<3>(first)) * arena.frame_lift(block.index);
+    JacobianMap<Eigen::Dynamic, 7> map(jacobians[k], J.rows(), 7);
+    map.leftCols<4>().noalias() = J.middleCols<3>(first) * lift;
+    map.rightCols<3>() = J.middleCols<3>(first + 3);
   }
   return true;
 }

@@ -28,7 +28,7 @@ struct SolverContext {
 struct CostBlock {
   enum class Kind { kPose, kVelocity, kBiases, kCalibration, kLandmark };
   Kind kind;
-  int index;  ///< frame, entry of the layout, or landmark of the arena
+  int index;  ///< frame, group of the calibration, or landmark of the arena
 };
 
 /// Adds a block's memory and size to a cost function's lists.
@@ -90,8 +90,10 @@ class PriorCost final : public ceres::CostFunction {
  private:
   const SolverContext* context_ = nullptr;
   const WindowPrior* prior_ = nullptr;
+  std::vector<CostBlock> blocks_;
   mutable Eigen::VectorXd window_deviation_;  // scratch
   mutable Eigen::VectorXd deviation_;         // scratch
+  mutable Eigen::MatrixXd group_J_;           // scratch
 };
 
 }  // namespace duet

@@ -49,6 +49,10 @@ WindowProblem::WindowProblem(const WindowOptions& options, const ReprojectionSet
       pose_(std::make_unique<ceres::ProductManifold<RotationManifold, ceres::EuclideanManifold<3>>>(
           RotationManifold(), ceres::EuclideanManifold<3>())),
       loss_(MakeLoss(options)) {
+  for (const CalibrationGroup& group : arena_.groups()) {
+    groups_.push_back(group.has_rotation ? std::make_unique<CalibrationManifold>(layout, group)
+                                         : nullptr);
+  }
   context_.arena = &arena_;
   context_.layout = &layout;
   context_.reprojection = reprojection;
@@ -63,11 +67,8 @@ void WindowProblem::AddParameters(const std::vector<Landmark>& landmarks) {
     problem_->AddParameterBlock(arena_.velocity(i), 3);
     problem_->AddParameterBlock(arena_.biases(i), 6);
   }
-  for (int e = 0; e < static_cast<int>(layout_.entries().size()); ++e) {
-    const CostBlock block{CostBlock::Kind::kCalibration, e};
-    const bool rotation = layout_.entries()[e].block == CalibrationBlock::kExtrinsicRotation;
-    problem_->AddParameterBlock(BlockMemory(block, context_), BlockSize(block, context_),
-                                rotation ? &rotation_ : nullptr);
+  for (int g = 0; g < static_cast<int>(arena_.groups().size()); ++g) {
+    problem_->AddParameterBlock(arena_.group(g), arena_.groups()[g].ambient_size, groups_[g].get());
   }
   int index = 0;
   for (const Landmark& landmark : landmarks) {
@@ -150,8 +151,8 @@ SolveSummary WindowProblem::Solve() {
     ordering->AddElementToGroup(arena_.velocity(i), 1);
     ordering->AddElementToGroup(arena_.biases(i), 1);
   }
-  for (int e = 0; e < static_cast<int>(layout_.entries().size()); ++e) {
-    ordering->AddElementToGroup(arena_.calibration(e), 1);
+  for (int g = 0; g < static_cast<int>(arena_.groups().size()); ++g) {
+    ordering->AddElementToGroup(arena_.group(g), 1);
   }
   options.linear_solver_ordering = ordering;
 

@@ -60,8 +60,8 @@ class WindowProblem {
   const CalibrationLayout& layout_;
   ParameterArena arena_;
   SolverContext context_;
-  RotationManifold rotation_;
   std::unique_ptr<ceres::Manifold> pose_;
+  std::vector<std::unique_ptr<ceres::Manifold>> groups_;  // null: flat
   std::unique_ptr<ceres::LossFunction> loss_;
   std::vector<std::unique_ptr<ReprojectionCost>> reprojection_costs_;  // pool
   std::vector<std::unique_ptr<ImuCost>> imu_costs_;                    // pool

@@ -73,10 +73,8 @@ std::optional<Sequence> Recorded(int cameras) {
   return sequence;
 }
 
-void Frame(benchmark::State& state, const std::string& name, const Sequence& sequence) {
-  BackendOptions options;
-  options.msckf.max_clones = static_cast<int>(state.range(1));
-  options.window.max_frames = static_cast<int>(state.range(1));
+void Frames(benchmark::State& state, const std::string& name, const Sequence& sequence,
+            const BackendOptions& options) {
   std::unique_ptr<Estimator> estimator;
   std::size_t next = sequence.frames.size();
   double used = 0.0;
@@ -92,6 +90,14 @@ void Frame(benchmark::State& state, const std::string& name, const Sequence& seq
     used += estimator->ProcessFrame(sequence.frames[next++]).features.used;
   }
   state.counters["landmarks"] = benchmark::Counter(used, benchmark::Counter::kAvgIterations);
+}
+
+// With so many frames in the window as the second argument says.
+void Frame(benchmark::State& state, const std::string& name, const Sequence& sequence) {
+  BackendOptions options;
+  options.msckf.max_clones = static_cast<int>(state.range(1));
+  options.window.max_frames = static_cast<int>(state.range(1));
+  Frames(state, name, sequence, options);
 }
 
 void SimulatedTracks(benchmark::State& state, const std::string& name) {
@@ -115,6 +121,37 @@ void Whole(benchmark::internal::Benchmark* benchmark) {
   }
 }
 
+// What estimating the whole calibration costs: the same stream (excited motion, 100 points, 1 px, a
+// global shutter or one of 20 ms), told right, everything fixed or everything estimated.
+void Calibration(benchmark::State& state, const std::string& name) {
+  SimulationOptions options = SimulationPreset("excited");
+  options.max_tracks = 100;
+  options.camera_rate_hz = 20.0;
+  options.duration_s = 20.0;
+  options.t_r_s = state.range(0) != 0 ? 0.02 : 0.0;
+  const SimulatedRecording recording = Simulate(options);
+  SharedOptions shared;
+  CalibrationPriors& priors = shared.calibration;
+  for (BlockPrior* block :
+       {&priors.T_g, &priors.T_s, &priors.T_a, &priors.p_CB, &priors.R_CB, &priors.intrinsics,
+        static_cast<BlockPrior*>(&priors.distortion), &priors.t_d, &priors.t_r}) {
+    block->estimated = state.range(1) != 0;
+  }
+  Frames(state, name,
+         {MakeSetup(recording, shared), recording.frames, recording.imu,
+          recording.TruthAt(recording.frames.front().timestamp)},
+         BackendOptions());
+}
+
+void FixedAndEstimated(benchmark::internal::Benchmark* benchmark) {
+  benchmark->ArgNames({"rolling", "estimated"})->Iterations(390)->Unit(benchmark::kMillisecond);
+  for (const int rolling : {0, 1}) {
+    for (const int estimated : {0, 1}) benchmark->Args({rolling, estimated});
+  }
+}
+
+BENCHMARK_CAPTURE(Calibration, msckf, "msckf")->Apply(FixedAndEstimated);
+BENCHMARK_CAPTURE(Calibration, window, "window")->Apply(FixedAndEstimated);
 BENCHMARK_CAPTURE(SimulatedTracks, msckf, "msckf")->Apply(Whole);
 BENCHMARK_CAPTURE(SimulatedTracks, window, "window")->Apply(Whole);
 BENCHMARK_CAPTURE(RecordedTracks, msckf, "msckf")->Apply(Whole);

@@ -42,8 +42,8 @@ std::vector<double*> BlocksInOrder(const RandomWindow& window, ParameterArena* a
     blocks.push_back(arena->velocity(i));
     blocks.push_back(arena->biases(i));
   }
-  for (int e = 0; e < static_cast<int>(window.layout.entries().size()); ++e) {
-    blocks.push_back(arena->calibration(e));
+  for (int g = 0; g < static_cast<int>(arena->groups().size()); ++g) {
+    blocks.push_back(arena->group(g));
   }
   for (int l = 0; l < static_cast<int>(window.landmarks.size()); ++l) {
     blocks.push_back(arena->landmark(l));
