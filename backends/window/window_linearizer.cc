@@ -57,8 +57,9 @@ void WindowLinearizer::AddLink(int i, NormalEquations* equations) const {
     equations->AddImu(i - 1, i, r, J);
   }
   if (frame.at_rest_since_before) {
-    equations->AddStandstill(i - 1, i,
-                             EvaluateStandstill(now_.nav[i - 1], now_.nav[i], standstill_));
+    StandstillResidual residual = EvaluateStandstill(first_.nav[i - 1], first_.nav[i], standstill_);
+    residual.r = EvaluateStandstill(now_.nav[i - 1], now_.nav[i], standstill_).r;
+    equations->AddStandstill(i - 1, i, residual);
   }
 }
 
