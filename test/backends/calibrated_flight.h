@@ -19,8 +19,8 @@ inline CalibrationPriors EverythingEstimated(ImuFrame imu_frame = ImuFrame::kGyr
 
 /// A rolling shutter (20 ms) with a shifted clock (5 ms) that moves in all six degrees of freedom
 /// after `rest_s` at rest; its calibration is told wrong by as much as `priors` say.
-inline SimulatedRecording CalibratedFlight(double duration_s, double rest_s,
-                                           const CalibrationPriors& priors) {
+inline SimulationOptions CalibratedFlight(double duration_s, double rest_s,
+                                          const CalibrationPriors& priors) {
   SimulationOptions options = SimulationPreset("excited");
   options.duration_s = duration_s;
   options.rest_s = rest_s;
@@ -28,7 +28,7 @@ inline SimulatedRecording CalibratedFlight(double duration_s, double rest_s,
   options.t_r_s = 0.02;
   options.told_errors = ToldErrorsOfPriors(priors);
   options.told_imu_frame = priors.imu_frame;
-  return Simulate(options);
+  return options;
 }
 
 }  // namespace duet::test

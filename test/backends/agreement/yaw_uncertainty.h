@@ -29,7 +29,8 @@ inline YawUncertainty MeasureYaw(const std::string& estimator_name, bool first_e
   constexpr double kRest_s = 2.0;
   SharedOptions shared;
   shared.calibration = EverythingEstimated();
-  const SimulatedRecording recording = CalibratedFlight(duration_s, kRest_s, shared.calibration);
+  const SimulatedRecording recording =
+      Simulate(CalibratedFlight(duration_s, kRest_s, shared.calibration));
   BackendOptions backends;
   backends.msckf.first_estimates = backends.window.first_estimates = first_estimates;
   const auto estimator = MakeEstimator(estimator_name, MakeSetup(recording, shared), backends);
