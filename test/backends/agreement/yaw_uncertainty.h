@@ -13,10 +13,10 @@ namespace duet::test {
 /// What an estimator said of its yaw over a run.
 struct YawUncertainty {
   int frames = 0;
-  int at_rest = 0;        ///< frames with the standstill measurement
-  int lost = 0;           ///< frames that were not tracked
+  int at_rest = 0;          ///< frames with the standstill measurement
+  int lost = 0;             ///< frames that were not tracked
   double smallest = 1e300;  ///< standard deviation of yaw over the start's, its smallest
-  double at_end = 0.0;    ///< the same at the last frame
+  double at_end = 0.0;      ///< the same at the last frame
   std::string failure;
 };
 

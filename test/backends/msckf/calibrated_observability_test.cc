@@ -6,6 +6,7 @@
 #include <Eigen/SVD>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "backends/msckf/linearization.h"
@@ -30,7 +31,7 @@ struct Case {
   CalibrationPriors priors = test::EverythingEstimated();
   double t_r_s = 0.02;
   Linearized linearized = Linearized::kRebased;
-  double correction = 1.0;  // times the usual size; 0: the path of a filter that is never corrected
+  bool corrected = true;  // false: the path of a filter that is never corrected
 };
 
 // A filter's run without its updates: the state is predicted from frame to frame and corrected at
@@ -45,26 +46,34 @@ class Flight {
     const Timestamp first =
         recording_.frames.front().timestamp + ToNanoseconds(recording_.told_rig.t_d_s);
     state_->Start({recording_.TruthAt(first), Matrix15d::Identity()});
+    start_ = state_->inertial().nav;
     const int size = state_->size();
     F_ = Eigen::MatrixXd::Identity(size, size);
     for (const TrackFrameSet& frames : recording_.frames) Advance(frames);
   }
 
   [[nodiscard]] const CalibrationLayout& layout() const { return state_->layout(); }
+  [[nodiscard]] const RigCalibration& told_rig() const { return recording_.told_rig; }
+  [[nodiscard]] const NavState& start() const { return start_; }
 
-  // The observability matrix, every column in units of what is not known of it: start errors of
-  // 10 mrad, 0.1 m, 0.1 m/s, 0.01 rad/s, 0.1 m/s^2, and the calibration's prior.
-  [[nodiscard]] Eigen::MatrixXd Observability() const {
+  // What is not known of each column: start errors of 10 mrad, 0.1 m, 0.1 m/s, 0.01 rad/s,
+  // 0.1 m/s^2, and the calibration's prior.
+  [[nodiscard]] Eigen::VectorXd units() const {
     Eigen::VectorXd unit(F_.cols());
     unit << Eigen::Vector3d::Constant(0.01), Eigen::Vector3d::Constant(0.1),
         Eigen::Vector3d::Constant(0.1), Eigen::Vector3d::Constant(0.01),
         Eigen::Vector3d::Constant(0.1), state_->layout().PriorSigmas();
+    return unit;
+  }
+
+  // The observability matrix, its columns in those units.
+  [[nodiscard]] Eigen::MatrixXd Observability() const {
     Eigen::Index rows = 0;
     for (const Eigen::MatrixXd& block : blocks_) rows += block.rows();
     Eigen::MatrixXd M(rows, F_.cols());
     rows = 0;
     for (const Eigen::MatrixXd& block : blocks_) {
-      M.middleRows(rows, block.rows()) = block * unit.asDiagonal();
+      M.middleRows(rows, block.rows()) = block * units().asDiagonal();
       rows += block.rows();
     }
     return M;
@@ -76,9 +85,9 @@ class Flight {
     options.t_r_s = setup.t_r_s;
     options.camera_rate_hz = 10.0;
     options.max_tracks = 40;
-    SimulatedRecording recording = Simulate(options);
-    if (setup.t_r_s == 0.0) recording.told_rig.t_r_s = 0.0;
-    return recording;
+    options.told_errors = {};  // random corrections move the calibration about instead
+    if (!setup.corrected) options.noise_scale = 0.0;  // it would leave the truth otherwise
+    return Simulate(options);
   }
 
   void Advance(const TrackFrameSet& frames) {
@@ -109,9 +118,8 @@ class Flight {
     imu_.Extract(inertial.instant, instant, &readings);
     const ImuDelta delta = IntegrateImu(readings, inertial.biases, state_->rig().imu, {});
     const NavState next = Predict(inertial.nav, delta, recording_.g_G);
-    const NavState& start = case_.linearized == Linearized::kAtCurrentEstimates
-                                ? inertial.nav
-                                : state_->nav_fej();
+    const NavState& start =
+        case_.linearized == Linearized::kAtCurrentEstimates ? inertial.nav : state_->nav_fej();
     const Transition t = MakeTransition(delta, start, next, recording_.g_G);
     const std::vector<int>& imu_columns = state_->layout().imu_columns();
     const auto T_count = static_cast<Eigen::Index>(imu_columns.size());
@@ -148,22 +156,29 @@ class Flight {
                       F_(components, Eigen::all));
   }
 
-  // Of about the size of a filter's corrections once it has converged.
+  // To where a converged filter stands: scattered about the truth.
   void Correct() {
     Eigen::VectorXd dx(state_->size());
-    const auto draw = [&](int offset) {
-      dx.segment<9>(offset) << RandomVector(&random_, 5e-4), RandomVector(&random_, 2e-3),
+    const auto scatter = [&]() {
+      Vector9d error;
+      error << RandomVector(&random_, 5e-4), RandomVector(&random_, 3e-3),
           RandomVector(&random_, 1e-2);
+      return error;
     };
-    draw(0);
-    dx.segment<6>(9) << RandomVector(&random_, 1e-4), RandomVector(&random_, 2e-3);
-    for (int i = 0; i < state_->layout().size(); ++i) {
-      dx[15 + i] = 0.02 * state_->layout().PriorSigmas()[i] * random_.Normal();
-    }
+    const InertialState& inertial = state_->inertial();
+    Vector15d error;
+    error << scatter(), RandomVector(&random_, 1e-4), RandomVector(&random_, 1e-2);
+    dx.head<15>() = BoxMinus(BoxPlus(recording_.TruthAt(inertial.instant), error), inertial);
+    const Eigen::VectorXd sigmas = layout().PriorSigmas();
+    dx.segment(15, sigmas.size()) =
+        BoxMinus(recording_.true_rig, state_->rig(), layout()) +
+        0.02 * sigmas.cwiseProduct(random_.NormalVector(static_cast<int>(sigmas.size())));
     for (int i = 0; i < static_cast<int>(state_->clones().size()); ++i) {
-      draw(state_->CloneOffset(i));
+      const Clone& clone = state_->clones()[i];
+      dx.segment<9>(state_->CloneOffset(i)) =
+          BoxMinus(BoxPlus(recording_.TruthAt(clone.instant).nav, scatter()), clone.nav);
     }
-    dx *= case_.correction;
+    if (!case_.corrected) dx.setZero();
     state_->Correct(dx, 0.05, 0.05);
     if (case_.linearized != Linearized::kRebased) return;
     // What Rebase does to the covariance, for F.
@@ -183,37 +198,107 @@ class Flight {
   SimulatedRecording recording_;
   Random random_;
   ImuBuffer imu_;
+  NavState start_;
   std::optional<FilterState> state_;
   Eigen::MatrixXd F_;
   std::map<std::uint64_t, std::vector<CloneObservation>> tracks_;
   std::vector<Eigen::MatrixXd> blocks_;
 };
 
-// The singular values, over the largest; prints those about the gap.
-Eigen::VectorXd SingularValues(const char* what, const Eigen::MatrixXd& M) {
+// What counts as zero of singular values over the largest: rounding leaves 1e-16, or 1e-14 where
+// directions are null by the integrator's Jacobians rather than term by term, and what is observed
+// lies above 1e-6.
+constexpr double kZero = 1e-12;
+constexpr double kObserved = 1e-6;
+
+// How many directions are null; prints the singular values about the gap and checks that there is
+// one.
+int NullDirections(const char* what, const Flight& flight) {
+  const Eigen::MatrixXd M = flight.Observability();
   Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(M).singularValues();
-  std::printf("%s: %ld x %ld, largest %.1e, then of it", what, static_cast<long>(M.rows()),
-              static_cast<long>(M.cols()), values[0]);
+  std::printf("%s, %ld rows, singular values 1 ...", what, static_cast<long>(M.rows()));
   values /= values[0];
   for (Eigen::Index i = values.size() - 9; i < values.size(); ++i) std::printf(" %.1e", values[i]);
   std::printf("\n");
-  return values;
+  EXPECT_FALSE(((values.array() > kZero) && (values.array() < kObserved)).any()) << what;
+  return static_cast<int>((values.array() < kZero).count());
 }
 
-TEST(CalibratedObservability, Explore) {
-  for (double t_r : {0.02, 0.0})
-  for (double corr : {1.0, 0.0})
-  for (ImuFrame frame : {ImuFrame::kGyroscope, ImuFrame::kFree})
-    for (const Linearized l : {Linearized::kRebased, Linearized::kAtFirstEstimates,
-                             Linearized::kAtCurrentEstimates}) {
-    Case c;
-    c.priors = test::EverythingEstimated(frame);
-    c.linearized = l;
-    c.t_r_s = t_r;
-    c.correction = corr;
-    const Flight flight(c);
-    std::printf("t_r %g corr %g frame %d linearized %d ", t_r, corr, (int)frame, (int)l);
-    SingularValues("filter", flight.Observability());
+TEST(CalibratedObservability, ExactlyFourDirectionsAreUnobservableWithFirstEstimates) {
+  for (const Linearized linearized : {Linearized::kRebased, Linearized::kAtFirstEstimates}) {
+    const Flight flight({.linearized = linearized});
+    ASSERT_EQ(flight.layout().size(), 41);
+    EXPECT_EQ(NullDirections("first estimates", flight), 4);
+
+    // They are a turn about gravity and a shift; the calibration has no part in them.
+    const NavState& first = flight.start();
+    Eigen::MatrixXd N = Eigen::MatrixXd::Zero(15 + flight.layout().size(), 4);
+    const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+    N.block<3, 1>(0, 0) = up;
+    N.block<3, 1>(3, 0) = up.cross(first.p_GB);
+    N.block<3, 1>(6, 0) = up.cross(first.v_GB);
+    N.block<3, 3>(3, 1).setIdentity();
+    const Eigen::MatrixXd M = flight.Observability() * flight.units().cwiseInverse().asDiagonal();
+    EXPECT_LT((M * N).norm(), 1e-12 * M.norm());
+  }
+}
+
+TEST(CalibratedObservability, HeadingIsFalselyObservedWithCurrentEstimates) {
+  EXPECT_EQ(
+      NullDirections("current estimates", Flight({.linearized = Linearized::kAtCurrentEstimates})),
+      3);
+}
+
+// With imu_frame free the body's axes are null too, along one consistent path: the truth's.
+TEST(CalibratedObservability, SevenDirectionsAreUnobservableWithTheGaugeFree) {
+  const CalibrationPriors free = test::EverythingEstimated(ImuFrame::kFree);
+  EXPECT_EQ(NullDirections("gauge free, global shutter, truth",
+                           Flight({.priors = free, .t_r_s = 0.0, .corrected = false})),
+            7);
+  // First estimates are made for the other four: a filter that is corrected on its way observes
+  // the axes, falsely.
+  EXPECT_EQ(NullDirections("gauge free, global shutter", Flight({.priors = free, .t_r_s = 0.0})),
+            4);
+  // So does a rolling shutter, along the truth: a row's pose comes by the IMU's rates, which turn
+  // with the axes, and whose derivatives are left out within tau (DESIGN.md section 3).
+  EXPECT_EQ(NullDirections("gauge free, rolling shutter, truth",
+                           Flight({.priors = free, .corrected = false})),
+            4);
+}
+
+// How much the pixels say of a turn of the axes, as a share of what they say of the same turn of
+// the camera alone: nothing, but for the frozen rates, which leave about |omega| tau.
+TEST(CalibratedObservability, FrozenRatesTellTheAxesByTheTurnWithinTheReadout) {
+  for (const double t_r_s : {0.0, 0.02}) {
+    const Flight flight(
+        {.priors = test::EverythingEstimated(ImuFrame::kFree), .t_r_s = t_r_s, .corrected = false});
+    const Eigen::MatrixXd M = flight.Observability() * flight.units().cwiseInverse().asDiagonal();
+    double share = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d phi = Eigen::Vector3d::Unit(axis);  // x_B' = Exp(phi) x_B
+      const RigCalibration& rig = flight.told_rig();
+      const int R_CB = 15 + flight.layout().OffsetOf(CalibrationBlock::kExtrinsicRotation, 0);
+      Eigen::VectorXd camera = Eigen::VectorXd::Zero(M.cols());
+      camera.segment<3>(R_CB) = -(rig.cameras[0].R_CB * phi);
+      Eigen::VectorXd axes = camera;
+      axes.head<3>() = -(flight.start().R_GB * phi);
+      const auto turn = [&](CalibrationBlock block, const Eigen::Matrix3d& T) {
+        const Eigen::Matrix3d change = -T * Hat(phi);
+        axes.segment<9>(15 + flight.layout().OffsetOf(block)) =
+            change.transpose().reshaped();  // by rows
+      };
+      turn(CalibrationBlock::kTg, rig.imu.T_g);
+      turn(CalibrationBlock::kTs, rig.imu.T_s);
+      turn(CalibrationBlock::kTa, rig.imu.T_a);
+      share = std::max(share, (M * axes).norm() / (M * camera).norm());
+    }
+    std::printf("t_r %g s: a turn of the axes is seen by %.1e of the camera's\n", t_r_s, share);
+    if (t_r_s == 0.0) {
+      EXPECT_LT(share, 1e-9);
+    } else {
+      EXPECT_LT(share, 0.02);
+      EXPECT_GT(share, 1e-4);
+    }
   }
 }
 
