@@ -80,10 +80,9 @@ void WindowLinearizer::AddLandmark(const Landmark& landmark, int last_frame,
                               &linear.r)) {
       continue;
     }
-    // A first estimate that puts the point behind the camera is of no use here.
+    // Where the first estimates put the point behind the camera, the pixel is left out: anywhere
+    // else it would add information about yaw.
     if (!EvaluateReprojection(reprojection_, first_, *frames_, layout_, anchor, o, landmark.value,
-                              &r_first, &linear.J) &&
-        !EvaluateReprojection(reprojection_, now_, *frames_, layout_, anchor, o, landmark.value,
                               &r_first, &linear.J)) {
       continue;
     }

@@ -1,25 +1,34 @@
+// Nothing in the measurements tells yaw: what an estimator reports of it can only get worse.
+
 #include "test/backends/agreement/yaw_uncertainty.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
 
-namespace duet::test {
+namespace duet {
 namespace {
 
-TEST(Yaw, Explore) {
-  const double T = std::getenv("T") ? std::atof(std::getenv("T")) : 10.0;
-  for (const char* name : {"msckf", "window"})
-    for (double s : {1e-4, 0.1, 1.0})
-      for (bool fe : {true, false}) {
-        const YawUncertainty y = MeasureYaw(name, fe, s, T);
-        std::printf("%s fe %d sigma %g: frames %d rest %d lost %d smallest-1 %.3e end %.6f %s\n",
-                    name, fe, s, y.frames, y.at_rest, y.lost, y.smallest - 1.0, y.at_end,
-                    y.failure.c_str());
-        std::fflush(stdout);
-      }
+class YawUncertaintyOf : public testing::TestWithParam<std::string> {};
+
+TEST_P(YawUncertaintyOf, NeverFallsBelowTheStartWithFirstEstimates) {
+  for (const bool first_estimates : {true, false}) {
+    const test::YawUncertainty yaw =
+        test::MeasureYaw(GetParam(), first_estimates, test::kTellingYawSigma_rad, 6.0);
+    test::Print(GetParam(), first_estimates, yaw);
+    ASSERT_EQ(yaw.failure, "");
+    EXPECT_GT(yaw.at_rest, 20);
+    EXPECT_EQ(yaw.lost, 0);
+    if (first_estimates) {
+      EXPECT_GT(yaw.smallest, 1.0 - 1e-6);
+    } else {
+      EXPECT_LT(yaw.smallest, 0.7);
+    }
+  }
 }
 
+INSTANTIATE_TEST_SUITE_P(All, YawUncertaintyOf, testing::ValuesIn(EstimatorNames()),
+                         [](const auto& each) { return each.param; });
+
 }  // namespace
-}  // namespace duet::test
+}  // namespace duet
