@@ -15,6 +15,13 @@ namespace duet::test {
 /// that is hidden by what it truly loses within seconds (a few mrad in a minute).
 inline constexpr double kTellingYawSigma_rad = 0.1;
 
+/// The estimators' defaults, with or without first estimates.
+inline BackendOptions WithFirstEstimates(bool first_estimates) {
+  BackendOptions backends;
+  backends.msckf.first_estimates = backends.window.first_estimates = first_estimates;
+  return backends;
+}
+
 /// What an estimator said of its yaw over a run.
 struct YawUncertainty {
   int frames = 0;
@@ -29,7 +36,7 @@ struct YawUncertainty {
 /// is at rest: its velocity is zero exactly, as every start at rest takes it (a velocity known in G
 /// would tell yaw); tilt and biases are off by what their covariance says. Yaw: theta's z, theta
 /// being global.
-inline YawUncertainty MeasureYaw(const std::string& estimator_name, bool first_estimates,
+inline YawUncertainty MeasureYaw(const std::string& estimator_name, const BackendOptions& backends,
                                  double sigma_yaw_rad, double duration_s) {
   constexpr double kRest_s = 2.0;
   SharedOptions shared;
@@ -38,8 +45,6 @@ inline YawUncertainty MeasureYaw(const std::string& estimator_name, bool first_e
   simulation.max_tracks = 60;
   simulation.pixel_noise_px = 0.5;  // with 1 px rest is told from motion now and then only
   const SimulatedRecording recording = Simulate(simulation);
-  BackendOptions backends;
-  backends.msckf.first_estimates = backends.window.first_estimates = first_estimates;
   const auto estimator = MakeEstimator(estimator_name, MakeSetup(recording, shared), backends);
 
   Vector15d sigma;
@@ -72,13 +77,11 @@ inline YawUncertainty MeasureYaw(const std::string& estimator_name, bool first_e
   return yaw;
 }
 
-inline void Print(const std::string& estimator_name, bool first_estimates,
-                  const YawUncertainty& yaw) {
+inline void Print(const std::string& what, const YawUncertainty& yaw) {
   std::printf(
-      "%s %s first estimates: %d frames, %d at rest; yaw's sigma over the start's: "
-      "smallest 1 %+.1e, at the end %.6f\n",
-      estimator_name.c_str(), first_estimates ? "with" : "without", yaw.frames, yaw.at_rest,
-      yaw.smallest - 1.0, yaw.at_end);
+      "%s: %d frames, %d at rest; yaw's sigma over the start's: smallest 1 %+.1e, at the end "
+      "%.6f\n",
+      what.c_str(), yaw.frames, yaw.at_rest, yaw.smallest - 1.0, yaw.at_end);
 }
 
 }  // namespace duet::test

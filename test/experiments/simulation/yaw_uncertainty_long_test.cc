@@ -12,15 +12,16 @@ class YawOverAMinute : public testing::TestWithParam<std::string> {};
 TEST_P(YawOverAMinute, NeverFallsBelowTheStartWithFirstEstimates) {
   // The default, and one that is large enough to show what is gained falsely.
   for (const double sigma_rad : {1e-4, test::kTellingYawSigma_rad}) {
-    const test::YawUncertainty yaw = test::MeasureYaw(GetParam(), true, sigma_rad, 60.0);
-    test::Print(GetParam(), true, yaw);
+    const test::YawUncertainty yaw =
+        test::MeasureYaw(GetParam(), test::WithFirstEstimates(true), sigma_rad, 60.0);
+    test::Print(GetParam() + " with first estimates", yaw);
     ASSERT_EQ(yaw.failure, "");
     EXPECT_EQ(yaw.lost, 0);
     EXPECT_GT(yaw.smallest, 1.0 - 1e-6) << sigma_rad;
   }
-  const test::YawUncertainty without =
-      test::MeasureYaw(GetParam(), false, test::kTellingYawSigma_rad, 60.0);
-  test::Print(GetParam(), false, without);
+  const test::YawUncertainty without = test::MeasureYaw(GetParam(), test::WithFirstEstimates(false),
+                                                        test::kTellingYawSigma_rad, 60.0);
+  test::Print(GetParam() + " without first estimates", without);
   EXPECT_LT(without.smallest, 0.5);
 }
 
