@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "backends/msckf/linearization.h"
+#include "backends/msckf/nullspace.h"
 #include "backends/msckf/transition.h"
 #include "common/geometry/so3.h"
 #include "common/measurement/triangulation.h"
@@ -35,9 +36,9 @@ struct Case {
 };
 
 // A filter's run without its updates: the state is predicted from frame to frame and corrected at
-// random at each by as much as a filter does; every track of ten observations is linearized where
-// Msckf would do it. `F` is the derivative of the whole error (newest state, calibration, clones)
-// by the first state's and the calibration's, (15 + c) columns.
+// random at each by about as much as a filter does; every track of ten observations is linearized
+// where Msckf would do it. `F_` is the derivative of the whole error (newest state, calibration,
+// clones) by the first state's and the calibration's, (15 + c) columns.
 class Flight {
  public:
   explicit Flight(const Case& setup) : case_(setup), recording_(Simulated(setup)), random_(3) {
