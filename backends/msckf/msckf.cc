@@ -134,8 +134,14 @@ void Msckf::UpdateStandstill(const TrackFrameSet& frames) {
   if (!at_rest || clone_count < 2) return;
 
   const int previous = clone_count - 2;
-  const StandstillResidual standstill = EvaluateStandstill(
-      state_.clones()[previous].nav, state_.inertial().nav, setup_.shared.standstill);
+  const Clone& before = state_.clones()[previous];
+  StandstillResidual standstill =
+      EvaluateStandstill(before.nav, state_.inertial().nav, setup_.shared.standstill);
+  if (options_.first_estimates) {
+    const Eigen::Matrix<double, kStandstillRows, 1> r = standstill.r;
+    standstill = EvaluateStandstill(before.nav_fej, state_.nav_fej(), setup_.shared.standstill);
+    standstill.r = r;
+  }
   // The previous clone takes part with (theta, p): its velocity is not measured.
   constexpr int kPrevious = 6;
   constexpr int kNewest = 9;

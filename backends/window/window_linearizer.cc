@@ -57,8 +57,9 @@ void WindowLinearizer::AddLink(int i, NormalEquations* equations) const {
     equations->AddImu(i - 1, i, r, J);
   }
   if (frame.at_rest_since_before) {
-    equations->AddStandstill(i - 1, i,
-                             EvaluateStandstill(now_.nav[i - 1], now_.nav[i], standstill_));
+    StandstillResidual residual = EvaluateStandstill(first_.nav[i - 1], first_.nav[i], standstill_);
+    residual.r = EvaluateStandstill(now_.nav[i - 1], now_.nav[i], standstill_).r;
+    equations->AddStandstill(i - 1, i, residual);
   }
 }
 
@@ -79,10 +80,9 @@ void WindowLinearizer::AddLandmark(const Landmark& landmark, int last_frame,
                               &linear.r)) {
       continue;
     }
-    // A first estimate that puts the point behind the camera is of no use here.
+    // Where the first estimates put the point behind the camera, the pixel is left out: anywhere
+    // else it would add information about yaw.
     if (!EvaluateReprojection(reprojection_, first_, *frames_, layout_, anchor, o, landmark.value,
-                              &r_first, &linear.J) &&
-        !EvaluateReprojection(reprojection_, now_, *frames_, layout_, anchor, o, landmark.value,
                               &r_first, &linear.J)) {
       continue;
     }

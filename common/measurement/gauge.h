@@ -21,6 +21,11 @@ namespace duet {
 ///   camera         R_CB of the first camera is not estimated; then T_g and T_a take up its error
 ///   free           nothing; what the prior says of them holds them
 ///
+/// Under `free` an estimator falsely learns of the axes: first estimates keep yaw and position
+/// unobserved, not these, and the rates that are frozen within a rolling shutter's readout do not
+/// turn with the axes (a turn of the axes moves pixels by |omega| tau of what it moves them by if
+/// the camera alone turns; 0.65 % in CalibratedObservability).
+///
 /// T_s, where it is fixed, ties the axes too, by as much as it is (1e-3 rad/s per m/s^2 against 1):
 /// too little to count.
 [[nodiscard]] bool GaugeActs(const CalibrationPriors& priors);

@@ -123,15 +123,17 @@ bool StandstillDetector::ImageStands(const TrackFrame& newest) {
 StandstillResidual EvaluateStandstill(const NavState& state_i, const NavState& state_j,
                                       const StandstillOptions& options) {
   StandstillResidual result;
-  result.r.head<3>() = -state_j.v_GB;
+  const Eigen::Matrix3d R_BjG = state_j.R_GB.toRotationMatrix().transpose();
+  result.r.head<3>() = -(R_BjG * state_j.v_GB);
   result.r.tail<3>() = -BoxMinus(state_j.R_GB, state_i.R_GB);
-  // Linearized at the measured value, no rotation, where the left Jacobian is the identity: a turn
-  // of both states about gravity then changes nothing, exactly, whatever their estimates.
   result.J_i.setZero();
   result.J_j.setZero();
+  result.J_j.block<3, 3>(0, 0) = R_BjG * Hat(state_j.v_GB);
+  result.J_j.block<3, 3>(0, 6) = R_BjG;
+  // Linearized at the measured value, no rotation, where the left Jacobian is the identity: a turn
+  // of both states about gravity then changes nothing, exactly, whatever their estimates.
   result.J_i.block<3, 3>(3, 0) = -Eigen::Matrix3d::Identity();
   result.J_j.block<3, 3>(3, 0).setIdentity();
-  result.J_j.block<3, 3>(0, 6).setIdentity();
   result.sigma.head<3>().setConstant(options.velocity_sigma_m_per_s);
   result.sigma.tail<3>().setConstant(options.rotation_sigma_rad);
   return result;

@@ -77,9 +77,14 @@ class StandstillDetector {
   std::vector<ImuSample> readings_;  // scratch
 };
 
-/// The measurement at rest: v_j = 0 and no rotation from state i to state j, residual (6):
-/// z - h = (-v_j, -Log(R_j R_i')). It says nothing of the IMU's readings, which enter once, by
+/// The measurement at rest: no velocity and no rotation from state i to state j, residual (6):
+/// z - h = (-R_j' v_j, -Log(R_j R_i')). It says nothing of the IMU's readings, which enter once, by
 /// propagation. Jacobians of h: J_i, J_j (6x9 each, over theta, p, v).
+///
+/// The velocity is measured in the body's frame: of v_j = 0 in G, linearized where the estimate of
+/// v_j is not quite zero, a turn about gravity would change the prediction, and every frame at rest
+/// would tell yaw by |v_j|^2 / sigma^2. As it is both rows are blind to such a turn, exactly,
+/// wherever they are linearized.
 struct StandstillResidual {
   Eigen::Matrix<double, 6, 1> r;
   Eigen::Matrix<double, 6, 9> J_i;
