@@ -28,7 +28,7 @@ constexpr int kTrackLength = 10;  // observations with which a track is used; it
 // first_estimates alone, and with neither.
 enum class Linearized { kRebased, kAtFirstEstimates, kAtCurrentEstimates };
 
-struct Case {
+struct LinearizationCase {
   CalibrationPriors priors = test::EverythingEstimated();
   double t_r_s = 0.02;
   Linearized linearized = Linearized::kRebased;
@@ -41,7 +41,8 @@ struct Case {
 // clones) by the first state's and the calibration's, (15 + c) columns.
 class Flight {
  public:
-  explicit Flight(const Case& setup) : case_(setup), recording_(Simulated(setup)), random_(3) {
+  explicit Flight(const LinearizationCase& setup)
+      : case_(setup), recording_(Simulated(setup)), random_(3) {
     for (const ImuSample& sample : recording_.imu) imu_.Add(sample);
     state_.emplace(recording_.told_rig, setup.priors, static_cast<int>(recording_.frames.size()));
     const Timestamp first =
@@ -81,7 +82,7 @@ class Flight {
   }
 
  private:
-  static SimulatedRecording Simulated(const Case& setup) {
+  static SimulatedRecording Simulated(const LinearizationCase& setup) {
     SimulationOptions options = test::CalibratedFlight(8.0, 0.0, setup.priors);
     options.t_r_s = setup.t_r_s;
     options.camera_rate_hz = 10.0;
@@ -195,7 +196,7 @@ class Flight {
     state_->Rebase();
   }
 
-  Case case_;
+  LinearizationCase case_;
   SimulatedRecording recording_;
   Random random_;
   ImuBuffer imu_;
