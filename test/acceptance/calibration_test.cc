@@ -1,0 +1,118 @@
+// The calibration through the program: what a run says of it, duet ablate, and what is refused.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "test/acceptance/program.h"
+
+namespace duet {
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<std::string> Ablate(const std::string& out, const std::vector<std::string>& more,
+                                const std::string& states = "t_d,p_CB",
+                                const std::string& seeds = "1..2") {
+  std::vector<std::string> arguments = {"ablate",
+                                        "--simulate",
+                                        "excited",
+                                        "--set",
+                                        "simulation.duration_s=3",
+                                        "--set",
+                                        "simulation.max_tracks=40",
+                                        "--states",
+                                        states,
+                                        "--seeds",
+                                        seeds,
+                                        "--out",
+                                        out,
+                                        "--quiet"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TEST(AblateTest, ComparesSubsetsWithTheSameBytesForAnyNumberOfJobs) {
+  TemporaryFolder folder;
+  const ProgramResult one = RunDuet(Ablate(folder / "one", {"--jobs", "1"}));
+  ASSERT_EQ(one.status, 0) << one.err;
+  EXPECT_THAT(one.out, HasSubstr("msckf, estimated: t_d"));
+  EXPECT_THAT(one.out, HasSubstr("window, estimated: all"));
+  EXPECT_THAT(one.out, HasSubstr("error/predicted"));
+  const ProgramResult two = RunDuet(Ablate(folder / "two", {"--jobs", "2"}));
+  ASSERT_EQ(two.status, 0) << two.err;
+  EXPECT_EQ(ReadFile(folder / "one/calibration.csv"), ReadFile(folder / "two/calibration.csv"));
+  EXPECT_EQ(ReadFile(folder / "one/perturbation.yaml"), ReadFile(folder / "two/perturbation.yaml"));
+  const auto cells = nlohmann::json::parse(ReadFile(folder / "one/ablation.json"));
+  ASSERT_EQ(cells.size(), 8u);  // two estimators; none, t_d, p_CB, all
+  // t_d told 10 ms (1 sigma) wrong: fixed it costs accuracy, estimated it is found.
+  EXPECT_GT(cells[0]["ate_position_m"]["median"], cells[1]["ate_position_m"]["median"]);
+  EXPECT_LT(cells[1]["calibration"]["t_d"]["rms_error"], 0.002);
+  // The perturbation that was kept gives the same runs again.
+  const ProgramResult again = RunDuet(
+      Ablate(folder / "again", {"--jobs", "2", "--perturb", folder / "one/perturbation.yaml"}));
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(ReadFile(folder / "one/calibration.csv"), ReadFile(folder / "again/calibration.csv"));
+}
+
+TEST(AblateTest, BadInputIsOneClearLine) {
+  TemporaryFolder folder;
+  const std::string out = folder / "out";
+  const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
+      {Ablate(out, {}, "t_b"), "unknown name 't_b'; did you mean 't_d'?"},
+      {Ablate(out, {}, "t_d,t_d"), "'t_d' stands there twice"},
+      {Ablate(out, {}, "t_d", "2..1"), "expected A..B with 0 <= A <= B"},
+      {Ablate(out, {"--set", "shared.calibration.imu_frame=camera"}, "all"),
+       "shared.calibration.imu_frame: estimating all: camera ties"},
+      {Ablate(out, {"--perturb", folder / "none.yaml"}), "none.yaml"},
+      {Ablate(out, {"--dataset", folder / "x"}), "expected either --dataset or --simulate"}};
+  for (const auto& [arguments, says] : refused) {
+    const ProgramResult result = RunDuet(arguments);
+    EXPECT_EQ(result.status, 2) << says;
+    EXPECT_THAT(result.err, HasSubstr(says));
+    EXPECT_FALSE(std::filesystem::exists(out));
+  }
+}
+
+TEST(CalibratingRun, SaysWhatItFoundAndRefusesContradictions) {
+  TemporaryFolder folder;
+  const ProgramResult simulated =
+      RunDuet({"simulate", "--preset", "excited", "--set", "duration_s=4", "--set", "max_tracks=40",
+               "--set", "t_d_s=0.004", "--out", folder / "data", "--quiet"});
+  ASSERT_EQ(simulated.status, 0) << simulated.err;
+  const auto run = [&](const std::string& out, std::vector<std::string> settings) {
+    std::vector<std::string> arguments = {"run",         "--dataset", folder / "data",
+                                          "--backend",   "msckf",     "--init",
+                                          "groundtruth", "--out",     folder / out};
+    for (const std::string& setting : settings) {
+      arguments.insert(arguments.end(), {"--set", "shared.calibration." + setting});
+    }
+    return RunDuet(arguments);
+  };
+  const ProgramResult found = run("found", {"t_d.state=estimated", "told_offset.t_d_s=[0.01]"});
+  ASSERT_EQ(found.status, 0) << found.err;
+  EXPECT_THAT(found.out, HasSubstr("observed"));
+  EXPECT_THAT(ReadFile(folder / "found/calibration.csv"), HasSubstr("t_d"));
+
+  // A prior of 1 ms and an error of 10 ms: the estimate must leave the prior, and that is said.
+  const ProgramResult left =
+      run("left", {"t_d.state=estimated", "t_d.sigma=0.001", "told_offset.t_d_s=[0.01]"});
+  ASSERT_EQ(left.status, 0) << left.err;
+  EXPECT_THAT(left.out, HasSubstr("LEFT ITS PRIOR"));
+  EXPECT_THAT(ReadFile(folder / "left/manifest.json"), HasSubstr("t_d left its prior"));
+
+  const ProgramResult gauge = run("gauge", {"imu_frame=camera", "T_g.state=estimated",
+                                            "T_a.state=estimated", "R_CB.state=estimated"});
+  EXPECT_EQ(gauge.status, 2);
+  EXPECT_THAT(gauge.err, HasSubstr("shared.calibration.imu_frame: camera ties the body's axes"));
+  const ProgramResult bounds = run("bounds", {"t_r.state=estimated", "told_offset.t_r_s=[0.06]"});
+  EXPECT_EQ(bounds.status, 2);
+  EXPECT_THAT(bounds.err, HasSubstr("shared.max_abs_t_r_s: is 0.05; expected at least the told"));
+  const ProgramResult numbers = run("numbers", {"told_offset.p_CB_m=[0.01]"});
+  EXPECT_EQ(numbers.status, 2);
+  EXPECT_THAT(numbers.err, HasSubstr("told_offset.p_CB_m: has 1 numbers; expected 3"));
+}
+
+}  // namespace
+}  // namespace duet

@@ -1,0 +1,92 @@
+// Which subsets of the calibration an ablation runs, and in what order results come.
+
+#include "experiments/ablation/ablation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+namespace duet {
+namespace {
+
+using testing::ElementsAre;
+
+std::vector<std::string> Names(const std::vector<AblationVariant>& variants) {
+  std::vector<std::string> names;
+  for (const AblationVariant& variant : variants) names.push_back(variant.name);
+  return names;
+}
+
+TEST(Ablation, DesignsNameTheirSubsets) {
+  const std::vector<std::string> blocks = {"T_g", "p_CB", "t_d"};
+  EXPECT_THAT(Names(AblationVariants(blocks, AblationDesign::kOneAtATime)),
+              ElementsAre("none", "T_g", "p_CB", "t_d", "all"));
+  EXPECT_THAT(Names(AblationVariants(blocks, AblationDesign::kCombinations)),
+              ElementsAre("none", "T_g", "p_CB", "t_d", "T_g p_CB", "T_g t_d", "p_CB t_d", "all"));
+  EXPECT_THAT(Names(AblationVariants(blocks, AblationDesign::kNoneAndAll)),
+              ElementsAre("none", "all"));
+  EXPECT_THAT(Names(AblationVariants({"t_d"}, AblationDesign::kOneAtATime)),
+              ElementsAre("none", "t_d"));
+}
+
+TEST(Ablation, AVariantEstimatesItsBlocksAndNoOthers) {
+  CalibrationPriors priors;
+  priors.t_r.estimated = true;  // not listed: fixed
+  priors.p_CB.sigma = 0.07;
+  const CalibrationPriors chosen = PriorsOf({.name = "p_CB", .estimated = {"p_CB"}}, priors);
+  EXPECT_TRUE(chosen.p_CB.estimated);
+  EXPECT_EQ(chosen.p_CB.sigma, 0.07);
+  EXPECT_FALSE(chosen.t_r.estimated);
+  const ToldErrors errors = PriorErrorsOf({"p_CB"}, priors);
+  EXPECT_EQ(errors.p_CB_m, 0.07);
+  EXPECT_EQ(errors.t_d_s, 0.0);
+}
+
+TEST(Ablation, ResultsStandInOrderForAnyNumberOfThreads) {
+  AblationPlan plan;
+  plan.estimators = {"a", "b"};
+  plan.variants = AblationVariants({"t_d"}, AblationDesign::kNoneAndAll);
+  plan.first_seed = 3;
+  plan.last_seed = 7;
+  plan.threads = 4;
+  const std::vector<AblationCell> cells = RunAblation(
+      plan,
+      [](const std::string& estimator, const CalibrationPriors& priors, int seed) {
+        MonteCarloRun run;
+        run.seed = seed;
+        run.reason = estimator + (priors.t_d.estimated ? "+" : "-");
+        return run;
+      },
+      [](int) { return true; });
+  ASSERT_EQ(cells.size(), 4u);
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    ASSERT_EQ(cells[c].runs.size(), 5u);
+    for (int i = 0; i < 5; ++i) {
+      EXPECT_EQ(cells[c].runs[static_cast<std::size_t>(i)].seed, 3 + i);
+      EXPECT_EQ(cells[c].runs[static_cast<std::size_t>(i)].reason,
+                std::string(c < 2 ? "a" : "b") + (c % 2 == 0 ? "-" : "+"));
+    }
+  }
+}
+
+TEST(Ablation, StopsWhereItIsInterrupted) {
+  AblationPlan plan;
+  plan.estimators = {"a"};
+  plan.variants = AblationVariants({"t_d"}, AblationDesign::kNoneAndAll);
+  plan.first_seed = 1;
+  plan.last_seed = 50;
+  std::atomic<int> runs{0};
+  const std::vector<AblationCell> cells = RunAblation(
+      plan,
+      [&](const std::string&, const CalibrationPriors&, int) {
+        ++runs;
+        return MonteCarloRun();
+      },
+      [](int done) { return done < 3; });
+  EXPECT_TRUE(cells.empty());
+  EXPECT_EQ(runs, 3);
+}
+
+}  // namespace
+}  // namespace duet
