@@ -60,7 +60,7 @@ TEST(AblateTest, BadInputIsOneClearLine) {
   TemporaryFolder folder;
   const std::string out = folder / "out";
   const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
-      {Ablate(out, {}, "t_b"), "unknown name 't_b'; did you mean 't_d'?"},
+      {Ablate(out, {}, "t_dd"), "unknown name 't_dd'; did you mean 't_d'?"},
       {Ablate(out, {}, "t_d,t_d"), "'t_d' stands there twice"},
       {Ablate(out, {}, "t_d", "2..1"), "expected A..B with 0 <= A <= B"},
       {Ablate(out, {"--set", "shared.calibration.imu_frame=camera"}, "all"),
