@@ -1,5 +1,8 @@
 #include "backends/estimator.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace duet {
 
 const char* EstimatorStatusName(EstimatorStatus status) {
@@ -14,6 +17,11 @@ const char* EstimatorStatusName(EstimatorStatus status) {
       return "failed";
   }
   return "unknown";
+}
+
+void IncludeTold(const RigCalibration& told, SharedOptions* shared) {
+  shared->max_abs_t_d_s = std::max(shared->max_abs_t_d_s, std::abs(told.t_d_s));
+  shared->max_abs_t_r_s = std::max(shared->max_abs_t_r_s, std::abs(told.t_r_s));
 }
 
 double ImuHorizon(const SharedOptions& options) {

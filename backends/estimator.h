@@ -131,6 +131,10 @@ class Estimator {
   StageTimer* timer_ = nullptr;
 };
 
+/// Widens the bounds of |t_d| and |t_r| to hold the told values: for studies that draw these, where
+/// a rare draw is no bad input.
+void IncludeTold(const RigCalibration& told, SharedOptions* shared);
+
 /// How far past a frame's stamp the IMU must have been fed before the frame: the bounds of |t_d|
 /// and |t_r| / 2 plus one sample (the caller adds the sample), s.
 [[nodiscard]] double ImuHorizon(const SharedOptions& options);

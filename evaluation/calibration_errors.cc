@@ -164,7 +164,7 @@ std::vector<CalibrationBlockSummary> SummarizeCalibration(
   const std::vector<bool> rejected = HolmRejections(p_values, 1.0 - kConfidence);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const bool far = std::abs(blocks[i].mean_nees / blocks[i].dof - 1.0) > kNeesTolerance;
-    blocks[i].rejected = rejected[further_p_values.size() + i] && far;
+    blocks[i].rejected = blocks[i].runs > 0 && rejected[further_p_values.size() + i] && far;
   }
   return blocks;
 }
@@ -195,7 +195,9 @@ std::string CalibrationText(const std::vector<CalibrationBlockSummary>& blocks) 
     row.push_back(Number(block.mean_nees, 2));
     row.push_back(std::to_string(block.dof));
     row.push_back("[" + Number(block.band.low, 2) + ", " + Number(block.band.high, 2) + "]");
-    row.emplace_back(block.rejected ? "INCONSISTENT" : "consistent");
+    row.emplace_back(block.runs == 0  ? "no covariance"
+                     : block.rejected ? "INCONSISTENT"
+                                      : "consistent");
     row.push_back(whole ? "" : Number(block.convergence_s, 1));
     table.AddRow(row);
   }

@@ -60,7 +60,7 @@ class CalibrationErrors {
 struct CalibrationBlockSummary {
   std::string name;
   int dof = 0;
-  int runs = 0;
+  int runs = 0;  ///< whose covariance is positive definite; the others count nowhere below
   double rms_error = 0.0;  ///< over runs and components; in the block's unit
   double rms_sigma = 0.0;  ///< reported
   double prior_sigma = 0.0;
@@ -70,7 +70,7 @@ struct CalibrationBlockSummary {
   std::optional<double> error_over_predicted = {};
   double mean_nees = 0.0;
   Band band = {};  ///< of mean_nees, 99 %, for this block alone
-  double p_value = 0.0;
+  double p_value = 1.0;
   /// Outside its band after Holm's correction over all blocks and further from `dof` than a quarter
   /// of it.
   bool rejected = false;

@@ -7,6 +7,7 @@
 #include "common/measurement/gauge.h"
 #include "common/measurement/told_errors.h"
 #include "common/support/input_error.h"
+#include "common/support/logging.h"
 #include "common/support/nearest_name.h"
 #include "common/support/text_file.h"
 #include "experiments/ablation/ablation.h"
@@ -72,12 +73,12 @@ AblationDesign ParseDesign() {
 }
 
 void ReadPerturbation(const std::vector<std::string>& states, CalibrationPriors* priors) {
+  priors->told_errors = {};
+  priors->told_offset = {};
   if (FLAGS_perturb.empty()) {
     priors->told_errors = PriorErrorsOf(states, *priors);
     return;
   }
-  priors->told_errors = {};
-  priors->told_offset = {};
   if (FLAGS_perturb == "none") return;
   ConfigSources sources;
   sources.AddFile(FLAGS_perturb);
@@ -128,6 +129,7 @@ struct Ablation {
   MonteCarloOptions simulation;
   AblationPlan plan;
   std::vector<AblationCell> cells;
+  std::string tracks_sha256;  ///< of a recording
 };
 
 void RunOnSimulation(const CommandLine& line, Ablation* ablation) {
@@ -160,7 +162,8 @@ Eigen::VectorXd PredictSigma(const Ablation& ablation, const AblationCell& cell)
   MonteCarloOptions options = ablation.simulation;
   options.simulation.seed = ablation.plan.first_seed;
   SharedOptions shared = options.shared;
-  shared.calibration = PriorsOf(cell.variant, ablation.plan.priors);
+  shared.calibration =
+      ScaledPriors(PriorsOf(cell.variant, ablation.plan.priors), options.simulation.noise_scale);
   const SimulatedRecording recording = Simulate(options.simulation);
   const FisherInformation information(
       ObserveSimulation(recording, shared, StartCovariance(options.start, 1.0)));
@@ -182,6 +185,7 @@ void RunOnRecording(const CommandLine& line, Ablation* ablation) {
   ablation->plan = ReadPlan(session.configuration.shared);
   const std::vector<TrackFrameSet> frames = TracksOf(session, FLAGS_quiet);
   if (frames.empty()) return;
+  ablation->tracks_sha256 = HashTrackStream(frames);
   ablation->cells = RunPlan(ablation->plan,
                             [&](const std::string& estimator, CalibrationPriors priors, int seed) {
                               priors.told_errors_seed = seed;
@@ -199,10 +203,23 @@ std::string PerturbationYaml(const CalibrationPriors& priors) {
   return sources.ResolvedYaml();
 }
 
-int RunAblate(const CommandLine& line) {
+void CheckFlags(const CommandLine& line) {
   if (FLAGS_dataset.empty() == FLAGS_simulate.empty()) {
     throw InputError("expected either --dataset or --simulate");
   }
+  if (FLAGS_jobs < 1) {
+    throw InputError("", 0, "--jobs", "is " + std::to_string(FLAGS_jobs) + "; expected at least 1");
+  }
+  if (FLAGS_simulate.empty()) return;
+  for (const char* flag : {"tracks", "init", "cameras", "start", "duration", "threads", "seed"}) {
+    if (!line.Given(flag)) continue;
+    throw InputError("", 0, "--" + std::string(flag),
+                     "has no effect beside --simulate; expected keys of simulation by --set");
+  }
+}
+
+int RunAblate(const CommandLine& line) {
+  CheckFlags(line);
   RequireAbsent(FLAGS_out);
   LogCapture log(FLAGS_quiet);
   RecordFolder record(FLAGS_out, line, log);
@@ -213,7 +230,13 @@ int RunAblate(const CommandLine& line) {
   if (cells.empty()) return kInterrupted;
   std::map<const AblationCell*, Eigen::VectorXd> predictions;
   for (const AblationCell& cell : cells) {
-    if (simulated) predictions[&cell] = PredictSigma(ablation, cell);
+    if (!simulated || Interrupted()) continue;
+    try {
+      predictions[&cell] = PredictSigma(ablation, cell);
+    } catch (const InputError& error) {  // no bound for this cell; what was run is not lost
+      LOG(WARNING) << cell.estimator << ", " << cell.variant.name
+                   << ": no prediction: " << error.what();
+    }
   }
   const PredictedSigma predicted = [&](const AblationCell& cell) { return predictions[&cell]; };
   const std::string text = AblationText(cells, simulated, predicted);
@@ -223,8 +246,15 @@ int RunAblate(const CommandLine& line) {
   WriteTextFile(record.path() / "perturbation.yaml", PerturbationYaml(ablation.plan.priors));
   WriteTextFile(record.path() / "runs.csv", AblationRunsCsv(cells));
   WriteTextFile(record.path() / "calibration.csv", AblationCurvesCsv(cells));
+  // config.yaml says what the states were before the design switched them.
   record.manifest()["states"] = FLAGS_states;
+  record.manifest()["design"] = FLAGS_design;
+  record.manifest()["estimators"] = ablation.plan.estimators;
   record.manifest()["seeds"] = FLAGS_seeds;
+  if (!simulated) {
+    record.manifest()["seed"] = FLAGS_seed;
+    record.manifest()["tracks_sha256"] = ablation.tracks_sha256;
+  }
   if (!simulated) record.manifest()["dataset"] = DescribeRecording(ablation.session.recording);
   record.Commit(ablation.session.sources);
   std::fputs(text.c_str(), stdout);

@@ -158,7 +158,9 @@ class Comparator {
     // enough for a claim.
     if (session_.recording.truth && FLAGS_init == "groundtruth" && !run.trajectory.empty() &&
         !fs::exists(session_.recording.folder / "cam0")) {
-      run.run.nees = SummarizeNees(ComputeRecordNees(folder, *session_.recording.truth),
+      GroundTruth truth = *session_.recording.truth;
+      truth.poses = session_.TruthFor(session_.Setup());
+      run.run.nees = SummarizeNees(ComputeRecordNees(folder, truth),
                                    session_.configuration.evaluation.nees_settle_s);
     }
     if (const std::optional<std::string> late = LateStartWarning(WaitOf(run.run));
@@ -185,7 +187,7 @@ class Comparator {
     const std::vector<Timestamp> stamps = recording.FrameStamps();
     NamedTrajectory truth{"ground truth", {}};
     if (recording.truth) {
-      truth = {recording.truth_file, recording.truth->poses};
+      truth = {recording.truth_file, session_.TruthFor(session_.Setup())};
       options.start = std::max(stamps.front(), truth.poses.front().timestamp);
       options.end = std::min(stamps.back(), truth.poses.back().timestamp);
     } else {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <mutex>
@@ -27,7 +28,7 @@ void ParallelFor(int count, int threads, const Work& work) {
     }
   };
   std::vector<std::thread> others;
-  for (int i = 1; i < threads; ++i) others.emplace_back(take);
+  for (int i = 1; i < std::min(threads, count); ++i) others.emplace_back(take);
   take();
   for (std::thread& other : others) other.join();
   if (failure) std::rethrow_exception(failure);

@@ -5,6 +5,12 @@
 #include "common/support/input_error.h"
 
 namespace duet {
+namespace {
+
+// Two numbers of eight digits, which is more than anyone runs and less than an int holds.
+constexpr std::size_t kLongest = 18;
+
+}  // namespace
 
 SeedRange ParseSeeds(const std::string& text) {
   const std::size_t dots = text.find("..");
@@ -12,8 +18,9 @@ SeedRange ParseSeeds(const std::string& text) {
   char end = 0;
   if (dots == std::string::npos ||
       std::sscanf(text.c_str(), "%d..%d%c", &range.first, &range.last, &end) != 2 ||
-      range.first < 0 || range.last < range.first) {
-    throw InputError("", 0, "--seeds", "expected A..B with 0 <= A <= B, got '" + text + "'");
+      text.size() > kLongest || range.first < 0 || range.last < range.first) {
+    throw InputError("", 0, "--seeds",
+                     "expected A..B with 0 <= A <= B of at most eight digits, got '" + text + "'");
   }
   return range;
 }

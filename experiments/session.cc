@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/measurement/gauge.h"
 #include "common/measurement/told_errors.h"
 #include "common/support/input_error.h"
 #include "common/support/logging.h"
@@ -19,8 +20,8 @@ void CheckBounds(const RigCalibration& told, const SharedOptions& shared) {
     throw InputError("shared.max_abs_" + name + "_s: is " + FormatNumber(bound_s) +
                      "; expected at least the told " + name + ", " + FormatNumber(value_s) + " s");
   };
-  if (shared.calibration.t_d.estimated) check("t_d", told.t_d_s, shared.max_abs_t_d_s);
-  if (shared.calibration.t_r.estimated) check("t_r", told.t_r_s, shared.max_abs_t_r_s);
+  check("t_d", told.t_d_s, shared.max_abs_t_d_s);
+  check("t_r", told.t_r_s, shared.max_abs_t_r_s);
 }
 
 }  // namespace
@@ -34,6 +35,14 @@ EstimatorSetup Session::SetupWith(const SharedOptions& shared) const {
   return setup;
 }
 
+std::vector<StampedPose> Session::TruthFor(const EstimatorSetup& setup) const {
+  const Eigen::Quaterniond gauge =
+      GaugeRotation(recording.rig, setup.rig, setup.shared.calibration);
+  std::vector<StampedPose> poses = recording.truth->poses;
+  for (StampedPose& pose : poses) pose.T_GB.R = (pose.T_GB.R * gauge.conjugate()).normalized();
+  return poses;
+}
+
 EstimatorStart Session::StartWith(const EstimatorSetup& setup) const {
   const StartMode mode = FLAGS_init == "groundtruth" ? StartMode::kGroundTruth : StartMode::kRest;
   if (mode == StartMode::kGroundTruth && !recording.truth) {
@@ -41,7 +50,7 @@ EstimatorStart Session::StartWith(const EstimatorSetup& setup) const {
                      " has no ground truth (state_groundtruth_estimate0/data.csv)");
   }
   return {mode, setup, configuration.initialization,
-          mode == StartMode::kGroundTruth ? recording.truth->poses : std::vector<StampedPose>(),
+          mode == StartMode::kGroundTruth ? TruthFor(setup) : std::vector<StampedPose>(),
           recording.imu};
 }
 

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/dataset/recording.h"
 #include "experiments/command_line.h"
@@ -20,6 +21,9 @@ struct Session {
   /// What estimators are told.
   [[nodiscard]] EstimatorSetup Setup() const { return SetupWith(configuration.shared); }
   [[nodiscard]] EstimatorSetup SetupWith(const SharedOptions& shared) const;
+  /// The true poses (which there must be) in the axes that the setup's gauge ties the body to; the
+  /// recording's calibration is taken as the true one.
+  [[nodiscard]] std::vector<StampedPose> TruthFor(const EstimatorSetup& setup) const;
   /// By --init. Throws InputError for a start from a truth that the recording does not have.
   [[nodiscard]] EstimatorStart Start() const { return StartWith(Setup()); }
   [[nodiscard]] EstimatorStart StartWith(const EstimatorSetup& setup) const;

@@ -271,9 +271,13 @@ void WindowEstimator::Solve() {
     return;
   }
   problem_.Store(&frames_, &rig_, &table_.landmarks());
-  rig_.t_d_s = std::clamp(rig_.t_d_s, -setup_.shared.max_abs_t_d_s, setup_.shared.max_abs_t_d_s);
-  const double max_t_r_s = std::max(setup_.shared.max_abs_t_r_s, std::abs(setup_.rig.t_r_s));
-  rig_.t_r_s = std::clamp(rig_.t_r_s, -max_t_r_s, max_t_r_s);
+  const SharedOptions& shared = setup_.shared;
+  if (layout_.OffsetOf(CalibrationBlock::kTimeOffset) >= 0) {
+    rig_.t_d_s = std::clamp(rig_.t_d_s, -shared.max_abs_t_d_s, shared.max_abs_t_d_s);
+  }
+  if (layout_.OffsetOf(CalibrationBlock::kReadoutTime) >= 0) {
+    rig_.t_r_s = std::clamp(rig_.t_r_s, -shared.max_abs_t_r_s, shared.max_abs_t_r_s);
+  }
   linearizer_.SetWindow(frames_, rig_);
 }
 

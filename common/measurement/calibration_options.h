@@ -157,7 +157,8 @@ struct CalibrationPriors {
              .min = 0,
              .max = 15});
     v.Group("told_errors", &told_errors,
-            "How wrong the calibration is told on purpose: standard deviations of drawn errors.");
+            "How wrong the calibration is told on purpose: standard deviations of drawn errors "
+            "(of cameras: those listed in `cameras`).");
     v.Field("told_errors_seed", &told_errors_seed,
             {.doc = "Seed of told_errors; a block's errors do not depend on the other blocks.",
              .min = 0});

@@ -1,6 +1,6 @@
 #include "common/measurement/told_errors.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -63,6 +63,12 @@ bool TiesAxes(ImuFrame frame, const CalibrationLayout::Entry& entry, int number)
   return false;
 }
 
+// Blocks of no camera always are.
+bool IsAmong(const std::vector<int>& cameras, int camera) {
+  return camera < 0 || cameras.empty() ||
+         std::find(cameras.begin(), cameras.end(), camera) != cameras.end();
+}
+
 struct NamedOffset {
   const char* key;
   const std::vector<double>* numbers;
@@ -95,7 +101,8 @@ NamedOffset OffsetOf(const ToldOffset& offset, CalibrationBlock block) {
 }  // namespace
 
 RigCalibration DrawToldRig(const RigCalibration& true_rig, const ToldErrors& errors,
-                           ImuFrame imu_frame, std::uint64_t seed) {
+                           ImuFrame imu_frame, const std::vector<int>& cameras,
+                           std::uint64_t seed) {
   const CalibrationLayout layout(Everything(), true_rig);
   const Eigen::VectorXd values = ComponentValues(true_rig, layout);
   Eigen::VectorXd error(layout.size());
@@ -106,7 +113,9 @@ RigCalibration DrawToldRig(const RigCalibration& true_rig, const ToldErrors& err
       const int i = entry.offset + k;
       const double drawn = random.Normal();  // drawn even where it is held: the rest stays the same
       const double sigma = SigmaOf(errors, entry.block, values[i]);
-      error[i] = TiesAxes(imu_frame, entry, entry.number[k]) ? 0.0 : sigma * drawn;
+      const bool told_right =
+          TiesAxes(imu_frame, entry, entry.number[k]) || !IsAmong(cameras, entry.camera);
+      error[i] = told_right ? 0.0 : sigma * drawn;
     }
   }
   // x_true = x_told (+) e.
@@ -138,8 +147,9 @@ RigCalibration AddToldOffset(const RigCalibration& told_rig, const ToldOffset& o
 }
 
 RigCalibration ToldRig(const RigCalibration& rig, const CalibrationPriors& priors) {
-  const RigCalibration drawn = DrawToldRig(rig, priors.told_errors, priors.imu_frame,
-                                           static_cast<std::uint64_t>(priors.told_errors_seed));
+  const RigCalibration drawn =
+      DrawToldRig(rig, priors.told_errors, priors.imu_frame, priors.cameras,
+                  static_cast<std::uint64_t>(priors.told_errors_seed));
   return AddToldOffset(drawn, priors.told_offset);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "common/measurement/calibration.h"
 
@@ -10,9 +11,11 @@ namespace duet {
 /// e drawn from `errors`. A block's errors depend on the seed and on its own numbers only, so that
 /// studies with different blocks share them. Numbers that `imu_frame` ties the body's axes to are
 /// left as they are (R_CB of the first camera under `camera`; above the diagonal of T_g or T_a
-/// under `gyroscope` and `accelerometer`).
+/// under `gyroscope` and `accelerometer`), and so are cameras that are not among `cameras` (empty:
+/// all).
 [[nodiscard]] RigCalibration DrawToldRig(const RigCalibration& true_rig, const ToldErrors& errors,
-                                         ImuFrame imu_frame, std::uint64_t seed);
+                                         ImuFrame imu_frame, const std::vector<int>& cameras,
+                                         std::uint64_t seed);
 
 /// The told rig with the offset added. Throws InputError where a list has a wrong length, naming
 /// `shared.calibration.told_offset` and its key.

@@ -37,6 +37,7 @@ CellSummary SummarizeCell(const AblationCell& cell, bool consistency,
       ++summary.failed;
       continue;
     }
+    if (!std::isfinite(run.ate_position_m)) continue;  // a truth that stands still
     position_m.push_back(run.ate_position_m);
     orientation_deg.push_back(run.ate_orientation_deg);
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/measurement/gauge.h"
+#include "common/measurement/told_errors.h"
 #include "common/support/stage_timer.h"
 #include "evaluation/association.h"
 #include "evaluation/errors.h"
@@ -14,11 +15,9 @@
 namespace duet {
 namespace {
 
-void AddAccuracy(const Session& session, const Eigen::Quaterniond& gauge,
+void AddAccuracy(const Session& session, const EstimatorSetup& setup,
                  const std::vector<StampedPose>& estimate, MonteCarloRun* run) {
-  std::vector<StampedPose> truth = session.recording.truth->poses;
-  for (StampedPose& pose : truth) pose.T_GB.R = (pose.T_GB.R * gauge.conjugate()).normalized();
-  const Association association = Associate(truth, estimate, {});
+  const Association association = Associate(session.TruthFor(setup), estimate, {});
   const std::vector<PosePair>& pairs = association.pairs;
   if (pairs.size() < 3) {
     run->failed = true;
@@ -26,6 +25,11 @@ void AddAccuracy(const Session& session, const Eigen::Quaterniond& gauge,
     return;
   }
   const AbsoluteErrors errors = ComputeAbsoluteErrors(pairs, AlignmentMode::kPositionYaw);
+  if (!std::isfinite(errors.position_m.rmse)) {
+    run->failed = true;
+    run->reason = "its poses can't be aligned with the truth, which stands still";
+    return;
+  }
   run->ate_position_m = errors.position_m.rmse;
   run->ate_orientation_deg = errors.orientation_deg.rmse;
   run->coverage_s = association.coverage_s;
@@ -37,6 +41,7 @@ MonteCarloRun RunRecorded(const Session& session, const std::vector<TrackFrameSe
                           const std::string& estimator_name, const CalibrationPriors& priors) {
   Configuration configuration = session.configuration;
   configuration.shared.calibration = priors;
+  IncludeTold(ToldRig(session.recording.rig, priors), &configuration.shared);
   const EstimatorSetup setup = session.SetupWith(configuration.shared);
   EstimatorStart start = session.StartWith(setup);
   const std::unique_ptr<Estimator> estimator =
@@ -67,6 +72,7 @@ MonteCarloRun RunRecorded(const Session& session, const std::vector<TrackFrameSe
     const EstimatorOutput& output = estimator->ProcessFrame(frame);
     frame_ms.push_back(ThreadCpuMs() - before_ms);
     ++run.frames;
+    run.coverage_s = SecondsBetween(first, frame.timestamp);
     if (output.status == EstimatorStatus::kFailed) {
       run.failed = true;
       run.reason = output.reason;
@@ -91,7 +97,7 @@ MonteCarloRun RunRecorded(const Session& session, const std::vector<TrackFrameSe
     run.failed = true;
     run.reason = "did not start: " + start.reason();
   }
-  if (!run.failed) AddAccuracy(session, gauge, estimate, &run);
+  if (!run.failed) AddAccuracy(session, setup, estimate, &run);
   return run;
 }
 

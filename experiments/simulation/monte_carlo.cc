@@ -112,10 +112,12 @@ MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,
   simulation.told_errors =
       options.told_from_priors ? ToldErrorsOfPriors(priors) : priors.told_errors;
   simulation.told_imu_frame = priors.imu_frame;
+  simulation.told_cameras = priors.cameras;
   SimulatedRecording recording = Simulate(simulation);
   recording.told_rig = AddToldOffset(recording.told_rig, priors.told_offset);
   SharedOptions shared = options.shared;
   shared.calibration = ScaledPriors(shared.calibration, simulation.noise_scale);
+  IncludeTold(recording.told_rig, &shared);
   const EstimatorSetup setup = MakeSetup(recording, shared);
   const std::unique_ptr<Estimator> estimator = make_estimator(setup);
 
@@ -195,7 +197,7 @@ std::string MonteCarloText(const std::string& title, const MonteCarloResult& res
   const auto row = [&](const char* name, double MonteCarloRun::*member) {
     std::vector<double> values;
     for (const MonteCarloRun& run : result.runs) {
-      if (!run.failed) values.push_back(run.*member);
+      if (!run.failed && std::isfinite(run.*member)) values.push_back(run.*member);
     }
     const ErrorSummary summary = Summarize(values);
     text +=

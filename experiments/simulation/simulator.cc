@@ -152,9 +152,9 @@ SimulatedRecording SimulateIn(const Scenario& scenario, const SimulationOptions&
   recording.noise = scenario.noise;
   recording.pixel_noise_px = options.noise_scale * options.pixel_noise_px;
   recording.true_rig = scenario.true_rig;
-  recording.told_rig =
-      DrawToldRig(recording.true_rig, Scaled(options.told_errors, options.noise_scale),
-                  options.told_imu_frame, static_cast<std::uint64_t>(options.seed));
+  recording.told_rig = DrawToldRig(
+      recording.true_rig, Scaled(options.told_errors, options.noise_scale), options.told_imu_frame,
+      options.told_cameras, static_cast<std::uint64_t>(options.seed));
   if (scenario.recorded) {
     recording.imu = scenario.recorded->imu;
     recording.truth = scenario.recorded->states;

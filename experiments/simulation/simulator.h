@@ -70,6 +70,7 @@ struct SimulationOptions {
   /// The told rig is the true one minus drawn errors; their sigmas are multiplied by noise_scale.
   ToldErrors told_errors;
   ImuFrame told_imu_frame = ImuFrame::kFree;  ///< numbers that it holds are told right
+  std::vector<int> told_cameras = {};         ///< others are told right; empty: all are wrong
 
   template <class Visitor>
   void Visit(Visitor& v);

@@ -66,6 +66,8 @@ TEST(AblateTest, BadInputIsOneClearLine) {
       {Ablate(out, {"--set", "shared.calibration.imu_frame=camera"}, "all"),
        "shared.calibration.imu_frame: estimating all: camera ties"},
       {Ablate(out, {"--perturb", folder / "none.yaml"}), "none.yaml"},
+      {Ablate(out, {"--jobs", "0"}), "--jobs: is 0; expected at least 1"},
+      {Ablate(out, {"--duration", "3"}), "--duration: has no effect beside --simulate"},
       {Ablate(out, {"--dataset", folder / "x"}), "expected either --dataset or --simulate"}};
   for (const auto& [arguments, says] : refused) {
     const ProgramResult result = RunDuet(arguments);

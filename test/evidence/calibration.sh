@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What estimating the calibration is worth in simulation: test/evidence/calibration.sh OUT [SEEDS]
-# (default 50). Prints the tables of docs/calibration.md; about half an hour on two cores.
+# (default 50). Prints the tables of docs/calibration.md; an hour on two cores.
 set -euo pipefail
 out=$1
 seeds=${2:-50}
@@ -32,8 +32,9 @@ for milliseconds in 20 30; do
   for estimator in msckf window; do
     for estimated in t_r none; do
       awk -F, -v estimator="$estimator" -v estimated="$estimated" '
-        $1 == estimator && FILENAME ~ /global/ && $2 == "none" { global[$3] = $6 }
-        $1 == estimator && FILENAME ~ /rolling/ && $2 == estimated { print $6 / global[$3] }
+        $1 != estimator || $4 != 0 { next }
+        FNR == NR { if ($2 == "none") global[$3] = $6; next }
+        $2 == estimated && ($3 in global) { print $6 / global[$3] }
       ' "$out/global/runs.csv" "$out/rolling$milliseconds/runs.csv" | sort -g | awk -v e="$estimator" \
         -v estimated="$estimated" '{ ratio[NR] = $1 } END { printf("%s, estimated: %s: median paired ratio of ATE %.3f\n", e, estimated,
           (ratio[int((NR + 1) / 2)] + ratio[int(NR / 2) + 1]) / 2) }'

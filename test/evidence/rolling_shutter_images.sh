@@ -25,13 +25,16 @@ for seed in $(seq 1 "$seeds"); do
     [ -d "$data" ] || "$duet" simulate --quiet --preset difficult_room --images --seed "$seed" \
       --set duration_s=20 --set "t_r_s=0.0$(printf %02d "$milliseconds")" --out "$data"
   done
-  read -r filter window <<< "$(compare "global-$seed" "$out/data-0-$seed")"
+  errors=$(compare "global-$seed" "$out/data-0-$seed")
+  read -r filter window <<< "$errors"
   echo "seed $seed, global shutter: msckf ${filter:0:6} m, window ${window:0:6} m"
   for milliseconds in 20 30; do
     told=(--set "shared.calibration.told_offset.t_r_s=[-0.0$milliseconds]")
     data="$out/data-$milliseconds-$seed"
-    read -r f w <<< "$(compare "estimated-$milliseconds-$seed" "$data" "${told[@]}" "${estimate[@]}")"
-    read -r g v <<< "$(compare "ignored-$milliseconds-$seed" "$data" "${told[@]}")"
+    errors=$(compare "estimated-$milliseconds-$seed" "$data" "${told[@]}" "${estimate[@]}")
+    read -r f w <<< "$errors"
+    errors=$(compare "ignored-$milliseconds-$seed" "$data" "${told[@]}")
+    read -r g v <<< "$errors"
     awk -v t="$milliseconds" -v f="$f" -v w="$w" -v g="$g" -v v="$v" -v F="$filter" -v W="$window" \
       'BEGIN { printf("  t_r = %d ms: estimated msckf %.4f m (%.2f x), window %.4f m (%.2f x); not modelled %.4f m (%.1f x), %.4f m (%.1f x)\n",
                       t, f, f / F, w, w / W, g, g / F, v, v / W) }'

@@ -172,15 +172,24 @@ TEST(ToldErrors, ABlocksErrorsDoNotDependOnTheOthers) {
   ToldErrors more = only_t_d;
   more.T_g = 0.01;
   more.p_CB_m = 0.02;
-  const RigCalibration a = DrawToldRig(rig, only_t_d, ImuFrame::kGyroscope, 7);
-  const RigCalibration b = DrawToldRig(rig, more, ImuFrame::kGyroscope, 7);
+  const RigCalibration a = DrawToldRig(rig, only_t_d, ImuFrame::kGyroscope, {}, 7);
+  const RigCalibration b = DrawToldRig(rig, more, ImuFrame::kGyroscope, {}, 7);
   EXPECT_NE(a.t_d_s, rig.t_d_s);
   EXPECT_EQ(a.t_d_s, b.t_d_s);
   EXPECT_EQ(a.imu.T_g, rig.imu.T_g);
-  EXPECT_NE(a.t_d_s, DrawToldRig(rig, only_t_d, ImuFrame::kGyroscope, 8).t_d_s);
+  EXPECT_NE(a.t_d_s, DrawToldRig(rig, only_t_d, ImuFrame::kGyroscope, {}, 8).t_d_s);
   EXPECT_EQ(b.imu.T_g(0, 2), rig.imu.T_g(0, 2));  // the gauge's
   EXPECT_NE(b.imu.T_g(2, 0), rig.imu.T_g(2, 0));
-  EXPECT_NE(DrawToldRig(rig, more, ImuFrame::kFree, 7).imu.T_g(0, 2), rig.imu.T_g(0, 2));
+  EXPECT_NE(DrawToldRig(rig, more, ImuFrame::kFree, {}, 7).imu.T_g(0, 2), rig.imu.T_g(0, 2));
+}
+
+TEST(ToldErrors, CamerasThatAreNotListedAreToldRight) {
+  const RigCalibration rig = AnyRig(5);
+  ToldErrors errors;
+  errors.p_CB_m = 0.02;
+  const RigCalibration told = DrawToldRig(rig, errors, ImuFrame::kFree, {1}, 7);
+  EXPECT_EQ(told.cameras[0].p_CB, rig.cameras[0].p_CB);
+  EXPECT_NE(told.cameras[1].p_CB, rig.cameras[1].p_CB);
 }
 
 TEST(ToldErrors, OffsetsAreAddedCameraByCameraOrToAll) {
