@@ -12,6 +12,10 @@ if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # What a source keeps in its unnamed namespace counts as of a header there.
   target_compile_options(duet_warnings INTERFACE -Wno-subobject-linkage)
 endif()
+if(DUET_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC's manual: code that sanitizers add makes it see uninitialized values where there are none.
+  target_compile_options(duet_warnings INTERFACE -Wno-maybe-uninitialized)
+endif()
 
 if(DUET_PRECOMPILED_HEADERS)
   file(WRITE "${PROJECT_BINARY_DIR}/precompiled/empty.cc" "")

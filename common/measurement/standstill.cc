@@ -123,7 +123,7 @@ bool StandstillDetector::ImageStands(const TrackFrame& newest) {
 StandstillResidual EvaluateStandstill(const NavState& state_i, const NavState& state_j,
                                       const StandstillOptions& options) {
   StandstillResidual result;
-  const Eigen::Matrix3d R_BjG = state_j.R_GB.toRotationMatrix().transpose();
+  const Eigen::Matrix3d R_BjG = state_j.R_GB.conjugate().toRotationMatrix();
   result.r.head<3>() = -(R_BjG * state_j.v_GB);
   result.r.tail<3>() = -BoxMinus(state_j.R_GB, state_i.R_GB);
   result.J_i.setZero();
