@@ -41,7 +41,8 @@ void AddPairRows(const TrajectoryEvaluation& duet, const DefinitionComparison& c
       },
       table);
   AddToolRow(
-      comparison, "  poses paired again", "-",
+      comparison, "  poses paired again",
+      association.mode == AssociationMode::kInterpolated ? "0" : "-",
       [&](std::size_t i) { return std::to_string(comparison.tools[i].poses_matched_again); },
       table);
 }

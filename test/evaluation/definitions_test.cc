@@ -113,10 +113,12 @@ TEST(DefinitionsExamples, ShowWhatTheyAreFor) {
   EXPECT_DOUBLE_EQ(rpg.position_m.rmse, ov_eval.position_m.rmse);
   EXPECT_GT(rpg.relative.back().translation_m.median,
             1.2 * ov_eval.relative.back().translation_m.median);
-  // The estimate is four times denser: ov_eval does not take the nearest.
+  // The estimate is denser than the truth: ov_eval does not take the nearest.
   EXPECT_NE(example("fast", "ov_eval").matches, example("fast", "rpg").matches);
-  EXPECT_GT(example("fast", "ov_eval").largest_stamp_difference_s,
-            2.0 * example("fast", "rpg").largest_stamp_difference_s);
+  EXPECT_GT(
+      std::abs(example("fast", "ov_eval").position_m.rmse / example("fast", "rpg").position_m.rmse -
+               1.0),
+      0.03);
 }
 
 TEST(StampMatching, EvoMayTakeAPoseTwice) {

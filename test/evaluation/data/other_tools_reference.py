@@ -90,10 +90,10 @@ def examples():
             estimate.append(at + 6 * ms)
     epoch = 1403636583763555584
     gap = (tum_text(truth, epoch, true_pose), tum_text(estimate, epoch, estimated_pose))
-    # fast: small stamps; the estimate at 40 Hz is denser than the truth at 10 Hz, so that evo walks
+    # fast: small stamps; the estimate at 50 Hz is denser than the truth at 20 Hz, so that evo walks
     # the truth and ov_eval gives a true pose to the first of the estimate's that comes near.
-    truth = [k * 100 * ms for k in range(61)]
-    estimate = [k * 25 * ms + 7 * ms for k in range(230)]
+    truth = [k * 50 * ms for k in range(121)]
+    estimate = [k * 20 * ms + 7 * ms for k in range(295)]
     fast = (tum_text(truth, 10**9, true_pose), tum_text(estimate, 10**9, estimated_pose))
     return {"gap": gap, "fast": fast}
 
