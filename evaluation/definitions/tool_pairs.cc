@@ -41,9 +41,11 @@ ToolPairs TakeMatches(const std::vector<StampedPose>& truth,
 
 ToolSummary SummarizeForTool(std::vector<double> values, int ddof) {
   ToolSummary summary;
-  if (values.empty()) return summary;
+  summary.count = static_cast<int>(values.size());
+  // One that is no number (rpg's scale, of two poses at the origin) makes all numbers none.
+  const bool any_nan = std::any_of(values.begin(), values.end(), [](double v) { return v != v; });
+  if (values.empty() || any_nan) return summary;
   const ErrorSummary common = Summarize(values);
-  summary.count = common.count;
   summary.rmse = common.rmse;
   summary.mean = common.mean;
   summary.median = common.median;

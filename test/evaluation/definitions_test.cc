@@ -250,6 +250,62 @@ TEST(ToolDefinitions, WhereTheProgramsStopTheySaySo) {
   EXPECT_EQ(refused(truth, "rpg:posyaw:4"), "");
 }
 
+TEST(ToolDefinitions, WhatAnAlignmentTakesOutChangesNothing) {
+  Random random(7);
+  const std::vector<StampedPose> truth = Walk(30.0, 20.0);
+  const std::vector<StampedPose> estimate =
+      WithNoise(Walk(29.0, 33.0, kEpoch + 3 * kMs), 0.03, 0.01, &random);
+  const Eigen::Vector3d p(4.0, -3.0, 2.0);
+  const Eigen::Quaterniond yaw = YawRotation(1.1);
+  const Eigen::Quaterniond R = RandomRotation(&random);
+  struct Case {
+    const char* definition;
+    Eigen::Quaterniond R;
+    double scale;
+  };
+  const std::vector<double> lengths_m = {3.0};
+  for (const Case& c : std::vector<Case>{{"evo:origin", R, 1.0},
+                                         {"evo:se3", R, 1.0},
+                                         {"evo:se3:50", R, 1.0},
+                                         {"evo:sim3", R, 0.7},
+                                         {"rpg:posyaw", yaw, 1.0},
+                                         {"rpg:posyaw:1", yaw, 1.0},
+                                         {"rpg:se3", R, 1.0},
+                                         {"rpg:se3:1", R, 1.0},
+                                         {"rpg:sim3", R, 1.4},
+                                         {"ov_eval:posyaw", yaw, 1.0},
+                                         {"ov_eval:posyawsingle", yaw, 1.0},
+                                         {"ov_eval:se3", R, 1.0},
+                                         {"ov_eval:se3single", R, 1.0},
+                                         {"ov_eval:sim3", R, 1.4}}) {
+    const ToolDefinition definition = ParseToolDefinition(c.definition);
+    const ToolErrors errors = EvaluateByTool(truth, estimate, definition, lengths_m);
+    const ToolErrors moved =
+        EvaluateByTool(truth, Moved(estimate, c.R, p, c.scale), definition, lengths_m);
+    EXPECT_GT(errors.position_m.rmse, 0.01) << c.definition;
+    EXPECT_NEAR(moved.position_m.rmse, errors.position_m.rmse, 1e-9) << c.definition;
+    EXPECT_NEAR(moved.position_m.max, errors.position_m.max, 1e-9) << c.definition;
+    EXPECT_NEAR(moved.orientation_deg.rmse, errors.orientation_deg.rmse, 1e-7) << c.definition;
+    const ToolRelativeErrors& relative = errors.relative.back();
+    EXPECT_EQ(moved.relative.back().segments, relative.segments) << c.definition;
+    EXPECT_NEAR(moved.relative.back().translation_m.mean, relative.translation_m.mean, 1e-9)
+        << c.definition;
+    EXPECT_NEAR(moved.relative.back().rotation_deg.mean, relative.rotation_deg.mean, 1e-7)
+        << c.definition;
+    EXPECT_NEAR(moved.alignment.scale * c.scale, errors.alignment.scale, 1e-9) << c.definition;
+  }
+}
+
+TEST(ToolDefinitions, NumbersThatAreNoneSpoilTheirOwnSummaryOnly) {
+  // Both start at the origin: rpg's scale there is 0 / 0.
+  const auto truth = Moved(Walk(5.0, 20.0), Eigen::Quaterniond::Identity(), -WalkPose(0.0).p);
+  const ToolErrors errors = EvaluateByTool(truth, truth, ParseToolDefinition("rpg:none"), {});
+  EXPECT_EQ(errors.further[0].name, "scale_percent");
+  EXPECT_EQ(errors.further[0].summary.count, 101);
+  EXPECT_TRUE(std::isnan(errors.further[0].summary.median));
+  EXPECT_EQ(errors.position_m.max, 0.0);
+}
+
 TEST(ToolDefinitions, NamesAreReadAndWrittenAlike) {
   EXPECT_EQ(ParseToolDefinition("evo").Name(), "evo:se3");
   EXPECT_EQ(ParseToolDefinition("rpg").Name(), "rpg:posyaw");

@@ -418,18 +418,17 @@ def rpg(est, ref, alignment, n=-1):
 
 def ov_match(est, ref, max_diff=0.02):
     """ov_eval/src/alignment/AlignUtils.cpp: perform_association (5d9fbeeb52f7)."""
-    matches, k = [], 0
+    matches, start, n = [], 0, len(ref.t)
     for i, t in enumerate(est.t):
-        while k < len(ref.t) and ref.t[k] < t and abs(ref.t[k] - t) > max_diff:
-            k += 1
-        best, found = max_diff, None
-        while k < len(ref.t) and abs(ref.t[k] - t) <= max_diff:
-            if abs(ref.t[k] - t) >= best:
+        start = next((k for k in range(start, n) if ref.t[k] >= t or t - ref.t[k] <= max_diff), n)
+        falling = [max_diff]  # differences that fall strictly; the last of them is the match
+        for k in range(start, n):
+            if abs(ref.t[k] - t) >= falling[-1]:
                 break
-            best, found = abs(ref.t[k] - t), k
-            k += 1
-        if found is not None:
-            matches.append((i, found))
+            falling.append(abs(ref.t[k] - t))
+        if len(falling) > 1:
+            start += len(falling) - 1
+            matches.append((i, start - 1))
     return matches
 
 
