@@ -53,6 +53,7 @@ void LandmarkTable::KeepFrom(int first_kept, const WindowPoint& point, Landmark*
   if (!landmark->has_value || landmark->observations.empty()) return;
   const int new_anchor = landmark->anchor();
   if (new_anchor == old_anchor) return;
+  landmark->depth_known = false;
   landmark->has_value =
       landmark->value.z() > 0.0 &&
       LandmarkFromGlobal(point.rig, point.nav[new_anchor].pose(),

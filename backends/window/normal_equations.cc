@@ -33,6 +33,26 @@ Eigen::Matrix3d LandmarkInverseCholesky(const Eigen::Matrix3d& V) {
   return inverse * scale.asDiagonal();
 }
 
+void LinearizeDepth(int anchor, std::span<const LinearObservation> observations, int frame_count,
+                    const CalibrationLayout& layout, DepthRow* depth) {
+  const int c = kFrameSize * frame_count;
+  depth->diagonal = 0.0;
+  depth->row.setZero(c + layout.size());
+  Eigen::Matrix3d V = Eigen::Matrix3d::Zero();
+  for (const LinearObservation& o : observations) {
+    V.noalias() += o.J.landmark.transpose() * o.J.landmark;
+  }
+  const Eigen::RowVector3d L_inverse = LandmarkInverseCholesky(V).row(2);
+  if (L_inverse[2] == 0.0) return;
+  depth->diagonal = 1.0 / L_inverse[2];
+  for (const LinearObservation& o : observations) {
+    const Eigen::Vector2d w = o.J.landmark * L_inverse.transpose();
+    depth->row.segment<9>(kFrameSize * o.frame).noalias() += o.J.state.transpose() * w;
+    depth->row.segment<6>(kFrameSize * anchor).noalias() += o.J.anchor.transpose() * w;
+    depth->row.tail(layout.size()).noalias() += o.J.calibration.transpose() * w;
+  }
+}
+
 NormalEquations::NormalEquations(int frame_count, const CalibrationLayout& layout)
     : layout_(&layout), frame_count_(frame_count), calibration_(kFrameSize * frame_count) {
   CHECK_LE(frame_count, kMaxFrames);
@@ -170,6 +190,10 @@ void NormalEquations::AddLandmarkOf(int anchor, std::span<const LinearObservatio
     H.block(c, c, c_size, c_size).noalias() -= W_c.transpose() * W_c;
     b.segment(c, c_size).noalias() -= W_c.transpose() * y_l;
   }
+}
+
+void NormalEquations::AddPrior(const WindowPrior& prior) {
+  duet::AddPrior(prior, frame_count_, *layout_, &sum_);
 }
 
 InformationForm NormalEquations::Take() {

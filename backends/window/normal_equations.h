@@ -5,6 +5,7 @@
 
 #include "backends/window/imu_factor.h"
 #include "backends/window/marginalization.h"
+#include "backends/window/prior.h"
 #include "backends/window/reprojection_factor.h"
 #include "backends/window/window_state.h"
 #include "common/measurement/standstill.h"
@@ -22,6 +23,16 @@ struct LinearObservation {
 /// L^-1 with L L' = V of a landmark (3 x 3), by Cholesky in the order alpha, beta, rho; directions
 /// without information, by the rank rule of marginalization.h, get no pivot (a row of zeros).
 [[nodiscard]] Eigen::Matrix3d LandmarkInverseCholesky(const Eigen::Matrix3d& V);
+
+/// How a landmark's inverse depth, the minimum over its pixels, follows the rest of the window's
+/// error x (frames, then calibration): diagonal * rho = - row . x + noise of unit variance.
+/// Diagonal 0 where the pixels say nothing of the depth.
+struct DepthRow {
+  double diagonal = 0.0;
+  Eigen::VectorXd row;
+};
+void LinearizeDepth(int anchor, std::span<const LinearObservation> observations, int frame_count,
+                    const CalibrationLayout& layout, DepthRow* depth);
 
 /// H = sum of J'J and b = sum of J'r over the window's error, landmarks eliminated on the way in:
 ///
@@ -44,6 +55,11 @@ class NormalEquations {
   void AddLandmark(int anchor, std::span<const LinearObservation> observations, bool velocities,
                    bool inverse_depth_only);
 
+  /// Adds what a prior says.
+  void AddPrior(const WindowPrior& prior);
+
+  /// The sum so far, its upper triangle.
+  [[nodiscard]] const Eigen::MatrixXd& H() const { return sum_.H; }
   /// The whole quadratic, symmetric.
   [[nodiscard]] InformationForm Take();
 

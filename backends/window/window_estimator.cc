@@ -1,5 +1,6 @@
 #include "backends/window/window_estimator.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -315,6 +316,34 @@ void WindowEstimator::DecideKeyframe() {
       motion.tracks < options_.min_common_tracks || motion.mean_px >= options_.min_parallax_px;
 }
 
+// Which landmarks may tell of the poses. A wrong depth is a wrong scale of all that its pixels say
+// of the way between frames: where nothing moved but the rig's errors, that is made of them. `H`:
+// what is known without the landmarks at hand (upper triangle).
+void WindowEstimator::JudgeDepths(const Eigen::MatrixXd& H) {
+  const bool all =
+      options_.min_depth_sigmas == 0.0 ||
+      options_.landmark_parameters == WindowOptions::LandmarkParameters::kInverseDepthOnly;
+  std::optional<Eigen::LLT<Eigen::MatrixXd, Eigen::Upper>> llt;
+  Eigen::VectorXd scale;
+  for (Landmark& landmark : table_.landmarks()) {
+    if (!landmark.in_problem || landmark.depth_known) continue;
+    landmark.depth_known = all;
+    if (all) continue;
+    if (!llt) {
+      scale = H.diagonal().cwiseSqrt().cwiseInverse();
+      llt.emplace(scale.asDiagonal() * H * scale.asDiagonal());
+      if (llt->info() != Eigen::Success) return;
+    }
+    linearizer_.LinearizeDepth(landmark, &depth_);
+    depth_.row.array() *= scale.array();
+    llt->matrixL().solveInPlace(depth_.row);
+    const double rho = landmark.value.z() * depth_.diagonal;
+    landmark.depth_known = rho > 0.0 && rho * rho > options_.min_depth_sigmas *
+                                                        options_.min_depth_sigmas *
+                                                        (1.0 + depth_.row.squaredNorm());
+  }
+}
+
 void WindowEstimator::CheckHealth() {
   const InertialState& state = frames_.back().state;
   const bool finite = state.nav.R_GB.coeffs().allFinite() && state.nav.p_GB.allFinite() &&
@@ -343,23 +372,34 @@ void WindowEstimator::Report() {
   output_.rig = rig_;
 
   NormalEquations equations(newest() + 1, layout_);
+  equations.AddPrior(prior_);
   for (int i = 1; i <= newest(); ++i) linearizer_.AddLink(i, &equations);
+  JudgeDepths(equations.H());
+  int known = 0;
   for (const Landmark& landmark : table_.landmarks()) {
-    if (landmark.in_problem) linearizer_.AddLandmark(landmark, newest(), &equations);
+    if (!landmark.in_problem || !landmark.depth_known) continue;
+    linearizer_.AddLandmark(landmark, newest(), &equations);
+    known += landmark.seen_newest || options_.tracks == WindowOptions::Tracks::kFinished ? 1 : 0;
   }
-  InformationForm form = equations.Take();
-  AddPrior(prior_, newest() + 1, layout_, &form);
-  Eigen::MatrixXd covariance = NewestCovariance(form.H, layout_.size());
-  if (covariance.size() == 0) return Fail("the information matrix is not positive definite");
-  output_.covariance = std::move(covariance);
-
-  if (output_.features.used >= options_.min_landmarks || output_.standstill) {
+  if (known >= options_.min_landmarks || output_.standstill) {
     last_aided_ = output_.state.instant;
   }
+  const double unaided_s = SecondsBetween(last_aided_, output_.state.instant);
+  Eigen::MatrixXd covariance = NewestCovariance(equations.Take().H, layout_.size());
+  if (covariance.size() == 0) {
+    // Positions that are known to micrometres against one another and to tens of metres together
+    // are beyond an information matrix in doubles.
+    return Fail(unaided_s > options_.max_unaided_s
+                    ? "no landmark of known depth for " + std::to_string(unaided_s) +
+                          " s: the position is lost"
+                    : "the information matrix is not positive definite");
+  }
+  output_.covariance = std::move(covariance);
+
   const bool seen = output_.features.observed >= options_.min_landmarks || output_.standstill;
-  const bool aided = SecondsBetween(last_aided_, output_.state.instant) <= options_.max_unaided_s;
+  const bool aided = unaided_s <= options_.max_unaided_s;
   output_.status = seen && aided ? EstimatorStatus::kTracking : EstimatorStatus::kDeadReckoning;
-  output_.reason = !seen ? "too few tracks" : !aided ? "too few landmarks" : "";
+  output_.reason = !seen ? "too few tracks" : !aided ? "too few landmarks of known depth" : "";
 }
 
 void WindowEstimator::Slide() {

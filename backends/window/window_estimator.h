@@ -69,6 +69,7 @@ class WindowEstimator final : public Estimator {
   void ComposeOverSecondNewest();
   void AddLandmarksOfOldest(NormalEquations* equations);
   void TakePrior(const InformationForm& form, int dropped_frame);
+  void JudgeDepths(const Eigen::MatrixXd& H);
   void CheckHealth();
   void Fail(const std::string& reason);
   void Skip(const std::string& reason);
@@ -103,6 +104,7 @@ class WindowEstimator final : public Estimator {
   std::vector<ImuSample> readings_;                     // scratch
   std::vector<TrackObservationInState> triangulation_;  // scratch
   std::vector<int> selection_;                          // scratch
+  DepthRow depth_;                                      // scratch
 };
 
 }  // namespace duet

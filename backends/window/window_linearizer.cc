@@ -69,8 +69,8 @@ void WindowLinearizer::AddLink(int i, NormalEquations* equations) const {
   }
 }
 
-void WindowLinearizer::AddLandmark(const Landmark& landmark, int last_frame,
-                                   NormalEquations* equations) {
+std::span<const LinearObservation> WindowLinearizer::Linearize(const Landmark& landmark,
+                                                               int last_frame) {
   const bool inverse_depth_only =
       options_.landmark_parameters == WindowOptions::LandmarkParameters::kInverseDepthOnly;
   const int anchor = landmark.anchor();
@@ -106,8 +106,20 @@ void WindowLinearizer::AddLandmark(const Landmark& landmark, int last_frame,
     }
     ++used;
   }
-  equations->AddLandmark(anchor, {observations_.data(), used}, reprojection_.off_instant,
-                         inverse_depth_only);
+  return {observations_.data(), used};
+}
+
+void WindowLinearizer::AddLandmark(const Landmark& landmark, int last_frame,
+                                   NormalEquations* equations) {
+  const bool inverse_depth_only =
+      options_.landmark_parameters == WindowOptions::LandmarkParameters::kInverseDepthOnly;
+  equations->AddLandmark(landmark.anchor(), Linearize(landmark, last_frame),
+                         reprojection_.off_instant, inverse_depth_only);
+}
+
+void WindowLinearizer::LinearizeDepth(const Landmark& landmark, DepthRow* depth) {
+  duet::LinearizeDepth(landmark.anchor(), Linearize(landmark, static_cast<int>(frames_->size())),
+                       static_cast<int>(frames_->size()), layout_, depth);
 }
 
 void WindowLinearizer::ShiftToOrigin(const RigCalibration& rig_origin,

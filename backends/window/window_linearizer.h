@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "backends/window/normal_equations.h"
@@ -39,10 +40,17 @@ class WindowLinearizer {
   /// The landmark's pixels in frames up to `last_frame`.
   void AddLandmark(const Landmark& landmark, int last_frame, NormalEquations* equations);
 
+  /// How the depth follows from all of the landmark's pixels.
+  void LinearizeDepth(const Landmark& landmark, DepthRow* depth);
+
   /// Moves a quadratic about the current values to the origins of the prior.
   void ShiftToOrigin(const RigCalibration& rig_origin, InformationForm* form) const;
 
  private:
+  /// The landmark's pixels in frames up to `last_frame`; valid until the next call.
+  [[nodiscard]] std::span<const LinearObservation> Linearize(const Landmark& landmark,
+                                                             int last_frame);
+
   const WindowOptions& options_;
   const ReprojectionSetup& reprojection_;
   const StandstillOptions& standstill_;

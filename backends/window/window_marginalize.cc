@@ -48,7 +48,8 @@ void WindowEstimator::AddLandmarksOfOldest(NormalEquations* equations) {
     const bool ended = !landmark.seen_newest;
     const bool split = options_.live_landmarks == WindowOptions::LiveLandmarks::kSplit;
     const int last = ended ? newest() : last_of_live;
-    const bool usable = landmark.in_problem && (ended || split) && pixels_until(last) >= 2;
+    const bool usable =
+        landmark.in_problem && landmark.depth_known && (ended || split) && pixels_until(last) >= 2;
     if (usable) {
       linearizer_.AddLandmark(landmark, last, equations);
       LandmarkTable::KeepFrom(last + 1, linearizer_.now(), &landmark);

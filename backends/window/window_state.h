@@ -62,6 +62,7 @@ struct LandmarkObservation {
 struct Landmark {
   std::uint64_t track_id = 0;
   bool has_value = false;    ///< triangulated
+  bool depth_known = false;  ///< beyond what the poses and the calibration are uncertain by
   bool in_problem = false;   ///< of the newest frame's problem
   bool seen_newest = false;  ///< observed in the newest frame
   InverseDepth value = InverseDepth::Zero();

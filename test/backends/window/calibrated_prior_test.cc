@@ -60,6 +60,7 @@ class CalibratedWindow {
         setup_(MakeSetup(recording_, shared_)),
         reprojection_{setup_.g_G, shared_.pixel_noise_px, true} {
     options_.first_estimates = first_estimates;
+    options_.min_depth_sigmas = 0.0;  // so unsure a start knows no depth
     estimator_.emplace(setup_, options_);
     start_ = recording_.TruthAt(recording_.frames.front().timestamp +
                                 ToNanoseconds(recording_.told_rig.t_d_s));

@@ -141,6 +141,7 @@ TEST(WindowEstimator, GainsNoInformationOnYawAndPosition) {
     run.start_covariance.diagonal().segment<3>(6).setConstant(2500.0);
     run.draw_start = false;
     run.options.first_estimates = first_estimates;
+    run.options.min_depth_sigmas = 0.0;  // so unsure a start knows no depth
     double yaw_sigma = 0.0;
     double p_sigma = 1e300;
     run.Go([&](const WindowEstimator&, const EstimatorOutput& output) {
