@@ -65,8 +65,8 @@ std::string StudyJson(const StudyPlan& plan, const PlannedRun& run, const fs::pa
 
 const std::vector<std::string>& CanonicalFiles() {
   static const std::vector<std::string> names = {
-      "config.yaml",  "trajectory.tum",  "states.csv", "calibration.csv",      "covariance.csv",
-      "features.csv", "evaluation.json", "truth.csv",  "calibration_truth.csv"};
+      "trajectory.tum", "states.csv",      "calibration.csv", "covariance.csv",
+      "features.csv",   "evaluation.json", "truth.csv",       "calibration_truth.csv"};
   return names;
 }
 

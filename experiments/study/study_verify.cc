@@ -85,7 +85,8 @@ class StudyVerifier {
       ++result_.runs;
       try {
         CheckRecord(record, run, id);
-        if (recording && IsOwn(record)) CheckEvaluation(record, *recording, info.simulated);
+        const bool is_own = IsOwn(record);
+        if (recording && is_own) CheckEvaluation(record, *recording, info.simulated);
       } catch (const InputError& error) {
         Problem(record, error.what());
       }

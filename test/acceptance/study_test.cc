@@ -48,10 +48,10 @@ class StudyTest : public testing::Test {
     }
     return records;
   }
-  /// One character of a file made another one.
-  static void Spoil(const fs::path& file, std::size_t from_end = 3) {
+  /// The last digit of a file made another one.
+  static void Spoil(const fs::path& file) {
     std::string text = ReadFile(file);
-    char& digit = text[text.size() - from_end];
+    char& digit = text[text.find_last_of("0123456789")];
     digit = digit == '1' ? '2' : '1';
     WriteFile(file, text);
   }
@@ -168,7 +168,8 @@ TEST_F(StudyTest, AFullDiskStopsItAndLosesNothing) {
   EXPECT_THAT(full.err, HasSubstr("cannot be written"));
   auto after = CanonicalFilesOf(out_);
   for (const auto& [path, text] : before) {
-    if (path.starts_with("runs/") || path.starts_with("streams/")) EXPECT_EQ(after[path], text);
+    const bool done = path.starts_with("runs/") || path.starts_with("streams/");
+    EXPECT_TRUE(!done || after[path] == text) << path;
   }
   for (const char* part : {"/runs", "/streams"}) {
     for (const std::string& name : FilesIn(out_ + part)) {
@@ -219,7 +220,9 @@ TEST_F(StudyTest, VerifyFindsWhatIsMissingChangedOrOfAnotherVersion) {
     WriteFile(file, whole);
   };
   finds(record / "features.csv", "runs/" + name + "/features.csv: has changed");
-  finds(record / "states.csv", "runs/" + name + "/evaluation.json: is not what the record gives");
+  finds(record / "evaluation.json",
+        "runs/" + name + "/evaluation.json: is not what the record gives");
+  finds(record / "states.csv", "runs/" + name + "/states.csv: has changed");
   finds(fs::path(out_) / "runs.csv", "runs.csv: is not what the records give");
   finds(fs::path(out_) / "streams" / stream / "mav0" / "tracks0" / "data.csv",
         "streams/" + stream + ": its tracks have changed");

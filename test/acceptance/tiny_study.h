@@ -26,8 +26,9 @@ inline constexpr const char* kTinyStudy =
     const std::string name = entry.path().filename().string();
     const std::string path = entry.path().lexically_relative(study).string();
     const bool is_varying = name == "manifest.json" || name == "timing.csv" || name == "lock" ||
-                            name == "runs.csv" || name == "summary.txt" || name == "log.txt" ||
-                            name.ends_with(".lock") || path.starts_with("slurm");
+                            name == "runs.csv" || name == "config.yaml" || name == "summary.txt" ||
+                            name == "log.txt" || name.ends_with(".lock") ||
+                            path.starts_with("slurm");
     if (entry.is_regular_file() && !is_varying) files[path] = ReadFile(entry.path());
   }
   return files;
