@@ -19,5 +19,6 @@ namespace duet {
 [[nodiscard]] Command ObservabilityCommand();
 [[nodiscard]] Command StudyCommand();
 [[nodiscard]] Command VerifyCommand();
+[[nodiscard]] Command TuneCommand();
 
 }  // namespace duet
