@@ -10,7 +10,7 @@
 namespace duet {
 
 struct BootstrapOptions {
-  int resamples = 2000;
+  int resamples = 2000;  ///< 0: no interval is asked for (NaN)
   double confidence = 0.95;
   std::uint64_t seed = 1;  ///< of the resamples: the same values give the same interval
 };

@@ -132,7 +132,7 @@ std::string FailureSentence(const StudyGrid& grid, const StudyTableOptions& opti
   if (failed == 0) return "None of " + of_runs + " failed.";
   // Any metric will do: failures are paired before values are looked at.
   StudyTableOptions quick = options;
-  quick.bootstrap_resamples = 1;
+  quick.bootstrap_resamples = 0;
   const MetricComparison comparison = CompareArms(grid, MetricOf("coverage_share"), quick);
   std::vector<double> p_values;
   for (const ArmComparison& arms : comparison.arms) {
