@@ -204,14 +204,12 @@ StudyTable NeesTable(const StudyGrid& grid, const std::vector<Metric>& metrics,
     TableCell mean = NumberCell(cell.mean, 2);
     mean.low = cell.mean - cell.standard_error;
     mean.high = cell.mean + cell.standard_error;
-    TableCell p = NumberCell(cell.p_holm, 4);
-    if (cell.p_holm < 0.0001) p.text = "<0.0001";
     table.rows.push_back(
         {.section = "",
          .cells = {TextCell(grid.arms()[cell.arm].name), TextCell(cell.metric.words),
                    NumberCell(cell.runs, 0), NumberCell(cell.dof, 0), std::move(mean),
-                   NumberCell(cell.band.low, 2), NumberCell(cell.band.high, 2), std::move(p),
-                   TextCell(NeesVerdict(cell, options.alpha))}});
+                   NumberCell(cell.band.low, 2), NumberCell(cell.band.high, 2),
+                   PValueCell(cell.p_holm), TextCell(NeesVerdict(cell, options.alpha))}});
   }
   table.verdict = NeesSentence(grid, cells, options.alpha);
   table.foot = {

@@ -9,6 +9,7 @@
 #include "common/support/nearest_name.h"
 #include "common/support/sha256.h"
 #include "evaluation/metrics.h"
+#include "evaluation/published.h"
 #include "evaluation/statistics.h"
 #include "evaluation/study_comparison.h"
 #include "evaluation/study_grid.h"
@@ -175,12 +176,6 @@ TableCell EffectCell(double value, const Band& interval, int decimals) {
   return cell;
 }
 
-TableCell PValueCell(double p) {
-  TableCell cell = NumberCell(p, 4);
-  if (p < 0.0001) cell.text = "<0.0001";
-  return cell;
-}
-
 StudyTable PairedTable(const MetricComparison& comparison, const StudyTableOptions& options) {
   const Metric& metric = comparison.metric;
   StudyTable table;
@@ -285,6 +280,12 @@ TableCell NumberCell(double value, int decimals) {
   return cell;
 }
 
+TableCell PValueCell(double p) {
+  TableCell cell = NumberCell(p, 4);
+  if (p < 0.0001) cell.text = "<0.0001";
+  return cell;
+}
+
 bool IsChaosStream(const StudyTableOptions& options, const std::string& stream) {
   return std::find(options.chaos_streams.begin(), options.chaos_streams.end(), stream) !=
          options.chaos_streams.end();
@@ -324,6 +325,12 @@ std::vector<StudyTable> MakeStudyTables(const StudyResult& study,
   }
   if (!nees.empty()) tables.push_back(NeesTable(grid, nees, options));
   tables.push_back(FailureTable(grid, options));
+  for (StudyTable& table : SensitivityTables(grid, options)) tables.push_back(std::move(table));
+  if (options.published != nullptr) {
+    for (StudyTable& table : PublishedTables(grid, *options.published)) {
+      tables.push_back(std::move(table));
+    }
+  }
   const std::vector<std::string> foot = CommonFoot(grid, options);
   for (StudyTable& table : tables) {
     table.foot.insert(table.foot.end(), foot.begin(), foot.end());
