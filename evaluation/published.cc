@@ -22,8 +22,9 @@ bool HasLine(std::string_view text, std::string_view line) {
          text.find("\n" + std::string(line) + "\n") != std::string_view::npos;
 }
 
-/// "# KEY: VALUE" of the head.
-std::string HeadLine(std::string_view text, const std::string& key, const std::string& file) {
+/// "# KEY: VALUE" of the head; empty where it is not there and need not be.
+std::string HeadLine(std::string_view text, const std::string& key, const std::string& file,
+                     bool required = true) {
   const std::string beginning = "# " + key + ": ";
   std::size_t at = 0;
   while (at < text.size()) {
@@ -35,6 +36,7 @@ std::string HeadLine(std::string_view text, const std::string& key, const std::s
     }
     at = end + 1;
   }
+  if (!required) return "";
   throw InputError(file, 0, key, "expected a line \"" + beginning + "...\"");
 }
 
@@ -60,6 +62,7 @@ PublishedNumbers ParsePublishedNumbers(std::string_view text, const std::string&
   numbers.source = HeadLine(text, "source", file);
   numbers.alignment = HeadLine(text, "alignment", file);
   numbers.covers = HeadLine(text, "covers", file);
+  numbers.note = HeadLine(text, "note", file, false);
   CsvReader reader(text, file, {{"sequence", "position_rmse_m", "orientation_rmse_deg"}});
   std::set<std::string> seen;
   while (reader.Next()) {

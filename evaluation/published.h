@@ -26,6 +26,7 @@ struct PublishedNumbers {
   std::string source;     ///< who says so, and where
   std::string alignment;  ///< of estimate and truth, as the source says
   std::string covers;     ///< what the numbers are of: error, cameras, odometry or more
+  std::string note;       ///< what else to know of them; may be empty
   std::vector<PublishedRow> rows;
 };
 

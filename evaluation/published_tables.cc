@@ -71,7 +71,8 @@ StudyTable ErrorsBesidePublished(const StudyGrid& grid, const Published& publish
     with_field.push_back(&numbers);
     table.columns.push_back({.title = numbers.name, .group = "published"});
     table.foot.push_back(numbers.name + ": " + numbers.covers +
-                         "; alignment: " + numbers.alignment + "; from " + numbers.source);
+                         "; alignment: " + numbers.alignment + "; source: " + numbers.source +
+                         (numbers.note.empty() ? "" : "; " + numbers.note));
   }
   // The mean is over the sequences that were run: a mean over others says nothing beside it.
   std::vector<double> sums(table.columns.size() - 1, 0.0);

@@ -99,7 +99,8 @@ struct StudyTableOptions {
 [[nodiscard]] std::string TableCsv(const StudyTable& table);
 /// GitHub's; best bold, second in italics.
 [[nodiscard]] std::string TableMarkdown(const StudyTable& table);
-/// A `table` environment for \input; needs \usepackage{booktabs}. Best bold, second underlined.
+/// A `table` environment for \input; needs \usepackage{booktabs,graphicx}. Best bold, second
+/// underlined; shrunk to the line where it is wider.
 [[nodiscard]] std::string TableLatex(const StudyTable& table);
 
 }  // namespace duet

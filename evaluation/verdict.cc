@@ -57,6 +57,7 @@ std::string SizeText(const MetricComparison& comparison, const ArmComparison& ar
     text = Number(std::abs(sides.difference), decimals) + unit +
            (sides.difference < 0.0 ? " less than " : " more than ") + *sides.other;
     interval = sides.difference_interval;
+    if (sides.difference < 0.0) interval = {-interval.high, -interval.low};
   } else {
     text = "there is no pair of which both ran";
   }

@@ -111,7 +111,7 @@ TEST(TableRendering, LatexCompiles) {
   std::filesystem::create_directories(folder);
   WriteTextFile(folder / "table.tex", TableLatex(HardTable()));
   WriteTextFile(folder / "paper.tex",
-                "\\documentclass{article}\n\\usepackage{booktabs}\n"
+                "\\documentclass{article}\n\\usepackage{booktabs,graphicx}\n"
                 "\\begin{document}\n\\input{table}\n\\end{document}\n");
   const std::string command = "cd '" + folder.string() +
                               "' && pdflatex -interaction=nonstopmode -halt-on-error paper.tex "
@@ -119,6 +119,7 @@ TEST(TableRendering, LatexCompiles) {
   EXPECT_EQ(std::system(command.c_str()), 0) << ReadTextFile(folder / "output.txt");
   const std::string log = ReadTextFile(folder / "paper.log");
   EXPECT_THAT(log, testing::Not(testing::HasSubstr("Missing character")));
+  EXPECT_THAT(log, testing::Not(testing::HasSubstr("Overfull")));
   EXPECT_THAT(log, testing::HasSubstr("Output written on paper.pdf (1 page"));
   std::filesystem::remove_all(folder);
 }
