@@ -83,8 +83,20 @@ std::string LatexLabel(std::string label) {
   return label;
 }
 
+/// A number's minus, which is no hyphen.
+std::string WithMinusSigns(const std::string& text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool minus =
+        text[i] == '-' && i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
+    result += minus ? std::string("$-$") : std::string(1, text[i]);
+  }
+  return result;
+}
+
 std::string LatexCell(const TableCell& cell) {
-  const std::string text = LatexText(CellText(cell));
+  const std::string escaped = LatexText(CellText(cell));
+  const std::string text = cell.text.empty() ? WithMinusSigns(escaped) : escaped;
   return cell.mark == TableMark::kBest         ? "\\textbf{" + text + "}"
          : cell.mark == TableMark::kSecondBest ? "\\underline{" + text + "}"
                                                : text;

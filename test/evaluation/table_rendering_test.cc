@@ -100,6 +100,17 @@ TEST(TableRendering, MarkdownShowsTextAndNotMarkup) {
   EXPECT_EQ(rows, 5);
 }
 
+TEST(TableRendering, LatexHasMinusSignsInNumbersOnly) {
+  StudyTable table;
+  table.name = "t";
+  table.columns = {{.title = "a", .is_text = true}, {.title = "b", .spread = "quartiles"}};
+  table.rows.resize(1);
+  table.rows[0].cells.resize(2);
+  table.rows[0].cells[0].text = "run-3";
+  table.rows[0].cells[1] = {.text = "", .value = -0.5, .low = -1.0, .high = 2.0, .decimals = 1};
+  EXPECT_THAT(TableLatex(table), testing::HasSubstr("run-3 & $-$0.5 [$-$1.0, 2.0] \\\\"));
+}
+
 TEST(TableRendering, LatexCompiles) {
   if (std::system("pdflatex --version > /dev/null 2>&1 && kpsewhich booktabs.sty > /dev/null") !=
       0) {
