@@ -12,6 +12,8 @@ duet_packages=(
   gnuplot-nox fonts-liberation
 )
 duet_test_packages=(libgtest-dev libgmock-dev libbenchmark-dev)
+# Compiles the LaTeX tables in a test, which is skipped without it, and says so.
+duet_tex_packages=(texlive-latex-base texlive-latex-recommended)
 
 # Installs what is missing of the packages named; says so, and how, where it may not.
 duet_install_packages() {
