@@ -1,9 +1,6 @@
 #include <cmath>
-#include <map>
-#include <nlohmann/json.hpp>
 
 #include "common/support/input_error.h"
-#include "evaluation/errors.h"
 #include "experiments/figures/figure_makers.h"
 #include "experiments/figures/figure_runs.h"
 #include "experiments/figures/figure_style.h"
@@ -68,35 +65,6 @@ Figure ErrorFigure(const FigureInput& input, bool position) {
                            std::to_string(runs.front().where.seed) + ".");
   }
   return figure;
-}
-
-struct RunRmse {
-  double position_m = std::nan("");
-  double orientation_deg = std::nan("");
-};
-
-// What the study has found; of plain records by the same definition, posyaw.
-RunRmse RmseOf(const FigureRun& run) {
-  RunRmse rmse;
-  const std::filesystem::path file = run.folder / "evaluation.json";
-  if (std::filesystem::exists(file)) {
-    const nlohmann::ordered_json json = ReadJsonFile(file);
-    if (!json.contains("metrics")) throw InputError(file, 0, "metrics", "is missing");
-    const auto get = [&](const char* key, double* value) {
-      const auto found = json.at("metrics").find(key);
-      if (found != json.at("metrics").end() && found->is_number()) *value = found->get<double>();
-    };
-    get("ate.position_m", &rmse.position_m);
-    get("ate.orientation_deg", &rmse.orientation_deg);
-    return rmse;
-  }
-  const std::vector<StampedPose> estimate = TrajectoryOf(run);
-  if (estimate.empty()) return rmse;
-  const AbsoluteErrors errors = ComputeAbsoluteErrors(
-      Associate(TruthOf(run).poses, estimate, {}).pairs, AlignmentMode::kPositionYaw);
-  rmse.position_m = errors.position_m.rmse;
-  rmse.orientation_deg = errors.orientation_deg.rmse;
-  return rmse;
 }
 
 }  // namespace

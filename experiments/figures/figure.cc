@@ -1,7 +1,5 @@
 #include "experiments/figures/figure.h"
 
-#include <limits>
-
 namespace duet {
 
 Series LineSeries(std::string name, std::string legend, Look look, std::vector<double> x,
@@ -56,14 +54,14 @@ void AddText(double x, double y, std::string text, Series* texts) {
   texts->texts.push_back(std::move(text));
 }
 
-void AddSegment(double x0, double y0, double x1, double y1, Series* line) {
-  constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
-  if (!line->columns[0].empty()) {
-    line->columns[0].push_back(kGap);
-    line->columns[1].push_back(kGap);
-  }
-  line->columns[0].insert(line->columns[0].end(), {x0, x1});
-  line->columns[1].insert(line->columns[1].end(), {y0, y1});
+Series SegmentSeries(std::string name, std::string legend, Look look) {
+  Series series = BarSeries(std::move(name), std::move(legend), look);
+  series.kind = SeriesKind::kSegments;
+  return series;
+}
+
+void AddSegment(double x0, double y0, double x1, double y1, Series* segments) {
+  AddBar(x0, x1, y0, y1, segments);
 }
 
 }  // namespace duet

@@ -19,11 +19,12 @@ struct Look {
 };
 
 enum class SeriesKind {
-  kLine,    ///< columns x, y; NaN breaks the line
-  kPoints,  ///< x, y
-  kBand,    ///< x, low, high
-  kBars,    ///< x from, x to, y from, y to: rectangles
-  kText,    ///< x, y and a text, centred there
+  kLine,      ///< columns x, y; NaN breaks the line
+  kPoints,    ///< x, y
+  kBand,      ///< x, low, high
+  kSegments,  ///< x from, x to, y from, y to: straight lines
+  kBars,      ///< x from, x to, y from, y to: rectangles
+  kText,      ///< x, y and a text, centred there
 };
 
 /// One thing drawn, and its columns of the figure's data.
@@ -80,7 +81,8 @@ void AddBar(double x_low, double x_high, double y_low, double y_high, Series* ba
 /// Texts, added one by one.
 [[nodiscard]] Series TextSeries(std::string name);
 void AddText(double x, double y, std::string text, Series* texts);
-/// A piece of a line with gaps: from one point to the other.
-void AddSegment(double x0, double y0, double x1, double y1, Series* line);
+/// Straight lines from one point to the other, added one by one.
+[[nodiscard]] Series SegmentSeries(std::string name, std::string legend, Look look);
+void AddSegment(double x0, double y0, double x1, double y1, Series* segments);
 
 }  // namespace duet

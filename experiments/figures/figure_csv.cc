@@ -16,6 +16,7 @@ std::vector<std::string> ColumnHeads(const Panel& panel, const Series& series) {
       return {x, y};
     case SeriesKind::kBand:
       return {x, y + " from", y + " to"};
+    case SeriesKind::kSegments:
     case SeriesKind::kBars:
       return {x + " from", x + " to", y + " from", y + " to"};
     case SeriesKind::kText:

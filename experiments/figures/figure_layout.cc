@@ -32,7 +32,8 @@ struct Range {
 
 // Which columns of a series lie along x; the others lie along y.
 bool AlongX(SeriesKind kind, std::size_t column) {
-  return column == 0 || (kind == SeriesKind::kBars && column == 1);
+  const bool two = kind == SeriesKind::kBars || kind == SeriesKind::kSegments;
+  return column == 0 || (two && column == 1);
 }
 
 Range DataRange(const Panel& panel, bool along_x) {

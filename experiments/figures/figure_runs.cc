@@ -260,7 +260,11 @@ Recording RecordingOf(const FigureRun& run) {
   const nlohmann::ordered_json manifest = ReadJsonFile(file);
   const auto dataset = manifest.find("dataset");
   if (dataset == manifest.end()) throw InputError(file, 0, "dataset", "is missing");
-  const fs::path path = JsonText(*dataset, "path");
+  fs::path path = JsonText(*dataset, "path");
+  if (!run.study.empty() && !run.where.stream_id.empty()) {
+    const fs::path own = run.study / "streams" / run.where.stream_id;
+    if (fs::exists(own / "mav0")) path = own;
+  }
   if (!fs::exists(path)) {
     throw InputError(file, 0, "dataset.path",
                      path.string() +
@@ -273,9 +277,18 @@ Recording RecordingOf(const FigureRun& run) {
   if (const auto cameras = dataset->find("cameras"); cameras != dataset->end()) {
     options.cameras = cameras->get<std::vector<int>>();
   }
+  // What was tracked from images lies in the record, or beside those of duet compare.
+  const std::string first = "tracks" + std::to_string(options.cameras.front());
+  for (const fs::path& tracks : {run.folder, run.folder.parent_path() / "tracks"}) {
+    if (options.tracks_folder.empty() && fs::exists(tracks / first)) {
+      options.source = RecordingOptions::Source::kTracks;
+      options.tracks_folder = tracks;
+    }
+  }
   Recording recording = LoadRecording(path, options);
   // Of tracks that lay elsewhere the fingerprint counts those.
-  const bool own_tracks = JsonText(manifest, "command_line").find("--tracks") == std::string::npos;
+  const bool own_tracks = options.tracks_folder.empty() &&
+                          JsonText(manifest, "command_line").find("--tracks") == std::string::npos;
   const std::string fingerprint = JsonText(*dataset, "fingerprint_sha256");
   if (own_tracks && !fingerprint.empty() && recording.fingerprint != fingerprint) {
     throw InputError(file, 0, "dataset.fingerprint_sha256",
@@ -383,6 +396,29 @@ NeesRun NeesOf(const FigureRun& run) {
     }
   }
   return nees;
+}
+
+RunRmse RmseOf(const FigureRun& run) {
+  RunRmse rmse;
+  const fs::path file = run.folder / "evaluation.json";
+  if (std::filesystem::exists(file)) {
+    const nlohmann::ordered_json json = ReadJsonFile(file);
+    if (!json.contains("metrics")) throw InputError(file, 0, "metrics", "is missing");
+    const auto get = [&](const char* key, double* value) {
+      const auto found = json.at("metrics").find(key);
+      if (found != json.at("metrics").end() && found->is_number()) *value = found->get<double>();
+    };
+    get("ate.position_m", &rmse.position_m);
+    get("ate.orientation_deg", &rmse.orientation_deg);
+    return rmse;
+  }
+  const std::vector<StampedPose> estimate = TrajectoryOf(run);
+  if (estimate.empty()) return rmse;
+  const AbsoluteErrors errors = ComputeAbsoluteErrors(
+      Associate(TruthOf(run).poses, estimate, {}).pairs, AlignmentMode::kPositionYaw);
+  rmse.position_m = errors.position_m.rmse;
+  rmse.orientation_deg = errors.orientation_deg.rmse;
+  return rmse;
 }
 
 std::string DescribeSource(const FigureRun& run) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -59,7 +60,8 @@ struct RecordTable {
 /// truth.csv, else that of the recording which the manifest names. Throws InputError where there is
 /// none, or where the recording is no longer the one that was run on.
 [[nodiscard]] GroundTruth TruthOf(const FigureRun& run);
-/// The recording that a run's manifest names, with its tracks.
+/// The recording that a run's manifest names (of a study: the folder's own), with the tracks that
+/// were run on.
 [[nodiscard]] Recording RecordingOf(const FigureRun& run);
 /// The estimate; empty where the run had no state.
 [[nodiscard]] std::vector<StampedPose> TrajectoryOf(const FigureRun& run);
@@ -81,6 +83,14 @@ struct ErrorsOverTime {
 /// stream, whatever time offset they estimate). Throws InputError as ErrorsOf does, and for a run
 /// that did not start in the truth's axes.
 [[nodiscard]] NeesRun NeesOf(const FigureRun& run);
+
+/// Errors after position + yaw alignment, each after its own fit: those of the study's
+/// evaluation.json, else by the same definition from trajectory and truth. NaN where there is none.
+struct RunRmse {
+  double position_m = std::nan("");
+  double orientation_deg = std::nan("");
+};
+[[nodiscard]] RunRmse RmseOf(const FigureRun& run);
 
 /// For the files' comments: path, program's version and commit, tracks.
 [[nodiscard]] std::string DescribeSource(const FigureRun& run);

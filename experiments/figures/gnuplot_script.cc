@@ -105,7 +105,7 @@ class ScriptWriter {
     for (const PlacedLegend& entry : layout_.legend) {
       const Series& series = *entry.series;
       const double end = entry.x + kSampleMm;
-      if (series.kind == SeriesKind::kLine) {
+      if (series.kind == SeriesKind::kLine || series.kind == SeriesKind::kSegments) {
         text_ += "  set arrow from " + At(entry.x, entry.y) + " to " + At(end, entry.y) +
                  " nohead " + LineLook(series.look) + "\n";
       } else if (series.kind == SeriesKind::kPoints) {
@@ -123,16 +123,17 @@ class ScriptWriter {
   }
 
   void Ticks(const char* axis, const PlacedAxis& placed, bool grid) {
-    text_ += std::string("  set ") + axis + "range [" + FormatNumber(placed.low) + ":" +
-             FormatNumber(placed.high) + "]\n  " + (placed.logarithmic ? "set" : "unset") +
-             " logscale " + axis + "\n  set " + axis + "tics nomirror scale 0.4 (";
+    // First a range that any scale can have: the panel before may have left another.
+    text_ += std::string("  set ") + axis + "range [1:10]\n  " +
+             (placed.logarithmic ? "set" : "unset") + " logscale " + axis + "\n  set " + axis +
+             "range [" + FormatNumber(placed.low) + ":" + FormatNumber(placed.high) + "]\n  set " +
+             axis + "tics nomirror scale 0.4 (";
     const char* separator = "";
     for (const auto& [value, words] : placed.ticks) {
       text_ += separator + GnuplotQuoted(words) + " " + FormatNumber(value);
       separator = ", ";
     }
-    text_ +=
-        std::string(")\n  ") + "set grid " + std::string() + (grid ? "" : "no") + axis + "tics\n";
+    text_ += std::string(")\n  set grid ") + (grid ? "" : "no") + axis + "tics\n";
   }
 
   void PlotPanel(std::size_t index, const std::vector<SeriesColumns>& columns) {
@@ -175,6 +176,9 @@ class ScriptWriter {
       case SeriesKind::kBand:
         return head + column(1) + ":" + column(2) + " with filledcurves " + FillLook(look) +
                " noborder lc " + Colour(look.colour);
+      case SeriesKind::kSegments:
+        return head + column(2) + ":($" + column(1) + "-$" + column(0) + "):($" + column(3) + "-$" +
+               column(2) + ") with vectors nohead " + LineLook(look);
       case SeriesKind::kBars:
         return head + column(2) + ":" + column(0) + ":" + column(1) + ":" + column(2) + ":" +
                column(3) + " with boxxyerror " + FillLook(look) +

@@ -130,7 +130,7 @@ class TexWriter {
       const Series& series = *entry.series;
       const std::string y = FormatFixed(entry.y, 3);
       const double end = entry.x + kSampleMm;
-      if (series.kind == SeriesKind::kLine) {
+      if (series.kind == SeriesKind::kLine || series.kind == SeriesKind::kSegments) {
         text_ += "\\draw[" + TexLine(series.look) + "] (" + FormatFixed(entry.x, 3) + "," + y +
                  ") -- (" + FormatFixed(end, 3) + "," + y + ");\n";
       } else if (series.kind == SeriesKind::kPoints) {
@@ -213,6 +213,7 @@ class TexWriter {
       case SeriesKind::kBand:
         WriteBand(series, columns, of);
         return;
+      case SeriesKind::kSegments:
       case SeriesKind::kBars:
         WriteBars(series, of);
         return;
@@ -249,8 +250,11 @@ class TexWriter {
       text_ += "  \\pgfplotstablegetelem{#1}{[index]" + std::to_string(of.first + k) +
                "}\\of\\duetdata\\let\\duet" + names[k] + "\\pgfplotsretval\n";
     }
-    text_ += "  \\edef\\duetbar{\\noexpand\\path[" + TexFill(series.look, true) +
-             "] (axis cs:\\duetxlow,\\duetylow) rectangle (axis cs:\\duetxhigh,\\duetyhigh);}\n"
+    const bool lines = series.kind == SeriesKind::kSegments;
+    text_ += "  \\edef\\duetbar{\\noexpand\\path[" +
+             (lines ? "draw=" + TexLine(series.look) : TexFill(series.look, true)) +
+             "] (axis cs:\\duetxlow,\\duetylow) " + (lines ? "--" : "rectangle") +
+             " (axis cs:\\duetxhigh,\\duetyhigh);}\n"
              "  \\duetbar}\n";
   }
 
