@@ -52,7 +52,7 @@ std::vector<std::string> ChosenComponents(const std::vector<std::string>& estima
   if (estimated.empty()) {
     throw InputError(file, 0, "",
                      "holds no calibration; expected a run that estimates one, e.g. with --set "
-                     "shared.calibration.estimate_t_d=true");
+                     "shared.calibration.t_d.state=estimated");
   }
   for (const std::string& name : asked) {
     if (std::find(estimated.begin(), estimated.end(), name) == estimated.end()) {

@@ -12,10 +12,12 @@
 namespace duet {
 namespace {
 
-constexpr double kEdgeMm = 0.8;                      // between anything and the page's edge
-constexpr double kTickGapMm = 1.8;                   // between the frame and its ticks' texts
-constexpr double kPanelGapMm = 2.6;                  // between panels that share x
-constexpr double kLegendSpaceMm = 3.5;               // between entries
+constexpr double kEdgeMm = 0.8;         // between anything and the page's edge
+constexpr double kTickGapMm = 1.8;      // between the frame and its ticks' texts
+constexpr double kPanelGapMm = 2.6;     // between panels that share x
+constexpr double kLegendSpaceMm = 3.5;  // between entries
+// A paper's own font may be a little wider than the house's.
+constexpr double kNoteWidthMm = 0.93 * (kColumnWidthMm - 2.0 * kEdgeMm);
 constexpr double kTickRoomMm = 1.7 * kLineHeightMm;  // of one tick of y
 constexpr double kDigitsHeightMm = 2.1;              // of a tick's text
 
@@ -180,7 +182,7 @@ PlacedAxis RoundLogarithmicAxis(double low, double high, double length_mm, doubl
       const double value = factor * std::pow(10.0, e);
       if (value < low * (1.0 - 1e-9) || value > high * (1.0 + 1e-9)) continue;
       char text[32];
-      std::snprintf(text, sizeof(text), e < -3 || e > 4 ? "%.0e" : "%g", value);
+      std::snprintf(text, sizeof(text), e < -4 || e > 4 ? "%.0e" : "%g", value);
       axis.ticks.emplace_back(value, text);
     }
   }
@@ -259,7 +261,7 @@ FigureLayout LayOut(const Figure& figure) {
     layout.panels.push_back(std::move(placed));
   }
   for (const std::string& note : figure.notes) {
-    for (const std::string& line : WrapText(note, kColumnWidthMm - 2.0 * kEdgeMm - 1.0)) {
+    for (const std::string& line : WrapText(note, kNoteWidthMm)) {
       layout.notes.push_back({kEdgeMm + 0.5, down + 0.5 * kLineHeightMm + 0.4, line});
       down += kLineHeightMm;
     }

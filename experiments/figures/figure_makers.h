@@ -5,8 +5,11 @@
 
 namespace duet {
 
-/// One function a figure: from records to what is drawn. All throw InputError. MakeFigure fills in
-/// the name, and the title where it is empty.
+/// What MakeFigure writes, before it does.
+[[nodiscard]] Figure ComposeFigure(const std::string& name, const FigureInput& input);
+
+/// One function a figure: from records to what is drawn. All throw InputError. ComposeFigure fills
+/// in the name, and the title where it is empty.
 
 // trajectory_figures.cc
 [[nodiscard]] Figure TrajectoryTopFigure(const FigureInput& input);

@@ -95,8 +95,7 @@ std::vector<FigureName> FigureNames() {
   return names;
 }
 
-bool MakeFigure(const std::string& name, const FigureInput& input,
-                const std::filesystem::path& out) {
+Figure ComposeFigure(const std::string& name, const FigureInput& input) {
   std::vector<std::string> names;
   for (const Maker& maker : Makers()) {
     names.emplace_back(maker.name);
@@ -105,10 +104,15 @@ bool MakeFigure(const std::string& name, const FigureInput& input,
     figure.name = name;
     if (figure.title.empty()) figure.title = maker.summary;
     ThinLines(&figure);
-    return WriteFigure(figure, out);
+    return figure;
   }
-  throw InputError("unknown figure '" + name + "'" + DidYouMean(name, names) +
-                   "; duet figure list names them");
+  throw InputError("unknown figure '" + name + "' (duet figure list names them)" +
+                   DidYouMean(name, names));
+}
+
+bool MakeFigure(const std::string& name, const FigureInput& input,
+                const std::filesystem::path& out) {
+  return WriteFigure(ComposeFigure(name, input), out);
 }
 
 }  // namespace duet

@@ -31,6 +31,7 @@ std::string TexText(const std::string& text) {
                                                             {"√", "$\\surd$"},
                                                             {"–", "--"},
                                                             {"τ", "$\\tau$"},
+                                                            {"θ", "$\\theta$"},
                                                             {"µ", "$\\mu$"},
                                                             {"−", "$-$"}};
   std::string out;
@@ -153,7 +154,7 @@ class TexWriter {
     const char* separator = "";
     for (const auto& [value, words] : placed.ticks) {
       text_ += separator + FormatNumber(value);
-      names += separator + ("{" + TexText(words) + "}");
+      names += separator + ("{\\strut " + TexText(words) + "}");
       separator = ",";
     }
     text_ += std::string("}, ") + axis + "ticklabels={" + names + "}, " + axis +

@@ -75,7 +75,7 @@ Figure HistogramFigure(const Stream& stream, const std::vector<double>& values, 
   figure.panels = {panel};
   figure.sources = {stream.source + ", tracks " + stream.sha256};
   char text[160];
-  std::snprintf(text, sizeof(text), "%zu tracks: %s median %.3g, p95 %.3g, largest %.3g.",
+  std::snprintf(text, sizeof(text), "%zu tracks; %s median %.3g, p95 %.3g, largest %.3g.",
                 values.size(), what.c_str(), summary.median, summary.p95, summary.max);
   figure.notes = {text, "Stream " + stream.sha256.substr(0, 32) + "."};
   return figure;
@@ -108,7 +108,7 @@ Figure TrackLengthsFigure(const FigureInput& input) {
   for (const auto& [id, count] : frames) lengths.push_back(count);
   if (lengths.empty()) throw InputError(stream.source + ": the stream has no track");
   const double bin = RoundBin(*std::max_element(lengths.begin(), lengths.end()), 1.0);
-  return HistogramFigure(stream, lengths, bin, "length of a track [frames]", "length in frames:");
+  return HistogramFigure(stream, lengths, bin, "length of a track [frames]", "length in frames,");
 }
 
 Figure ParallaxFigure(const FigureInput& input) {
@@ -154,7 +154,7 @@ Figure ParallaxFigure(const FigureInput& input) {
   if (degrees.empty()) throw InputError(stream.source + ": no track was seen twice");
   const double bin = RoundBin(*std::max_element(degrees.begin(), degrees.end()), 0.1);
   Figure figure = HistogramFigure(stream, degrees, bin, "largest parallax of a track [deg]",
-                                  "parallax in degrees:");
+                                  "parallax in degrees,");
   figure.notes.push_back(
       "Angle to the first ray of the track in G, by the true orientation; tracks seen twice or "
       "more.");

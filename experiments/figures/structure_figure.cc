@@ -103,21 +103,12 @@ Figure Thesis63Figure(const FigureInput& /*input*/) {
     }
   }
   std::vector<Group> groups = {{"state", 0, FilterState::kNavSize}};
-  int camera = 0;
-  int times = 0;
   int inertial = 0;
   for (const CalibrationLayout::Entry& entry : state.layout().entries()) {
-    (IsImuBlock(entry.block) ? inertial
-     : entry.block == CalibrationBlock::kTimeOffset || entry.block == CalibrationBlock::kReadoutTime
-         ? times
-         : camera) += entry.size;
+    if (IsImuBlock(entry.block)) inertial += entry.size;
   }
-  int next = FilterState::kNavSize;
-  for (const auto& [name, size] :
-       {std::pair{"T", inertial}, std::pair{"camera", camera}, std::pair{"t", times}}) {
-    groups.push_back({name, next, size});
-    next += size;
-  }
+  groups.push_back({"IMU", FilterState::kNavSize, inertial});
+  groups.push_back({"camera", FilterState::kNavSize + inertial, state.layout().size() - inertial});
   for (int clone = 0; clone < kClones; ++clone) {
     groups.push_back({"c" + std::to_string(clone), state.CloneOffset(clone), state.clone_size()});
   }
@@ -128,10 +119,7 @@ Figure Thesis63Figure(const FigureInput& /*input*/) {
                     .low = 0.0,
                     .high = static_cast<double>(state.size()),
                     .grid = false},
-              .y = {.label = "rows of H_x: u and v of each pixel",
-                    .low = 0.0,
-                    .high = height,
-                    .grid = false},
+              .y = {.label = "rows of H_x: pixels", .low = 0.0, .high = height, .grid = false},
               .height_mm = 36.0};
   for (const Group& group : groups) {
     AddSegment(group.first, 0.0, group.first, height, &borders);
@@ -146,8 +134,10 @@ Figure Thesis63Figure(const FigureInput& /*input*/) {
   panel.series = {nonzero, borders};
   figure.panels = {panel};
   figure.notes = {
-      "state: θ p v b_g b_a; T: the IMU's matrices; camera: p_CB, intrinsics, distortion; t: t_d "
-      "and t_r; c0 to c5: clones (θ p v). The anchor is c1: every row depends on it."};
+      "state: θ p v b_g b_a; IMU: T_g T_s T_a; camera: p_CB, intrinsics, distortion, t_d, t_r; c0 "
+      "to "
+      "c5: clones (θ p v). Two rows a pixel. The landmark is anchored in c1: every row depends on "
+      "it."};
   return figure;
 }
 

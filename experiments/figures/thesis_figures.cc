@@ -112,7 +112,7 @@ Figure Thesis32Figure(const FigureInput& input) {
       const int bin = static_cast<int>(std::floor((v - mean) / sigma / kBin)) + kBins / 2;
       counts[static_cast<std::size_t>(std::clamp(bin, 0, kBins - 1))] += 1.0;
     }
-    Series bars = BarSeries(std::string("gyro ") + axes[axis], "samples, share a rad/s",
+    Series bars = BarSeries(std::string("gyro ") + axes[axis], "samples",
                             {.colour = kSkyBlue, .opacity = 0.6});
     const double scale = 1.0 / (static_cast<double>(values.size()) * kBin * sigma);
     for (int i = 0; i < kBins; ++i) {
@@ -306,8 +306,8 @@ Figure Thesis81Figure(const FigureInput& input) {
     };
     add(errors.position_series_m, errors.position_m.rmse, &position);
     add(errors.orientation_series_deg, errors.orientation_deg.rmse, &orientation);
-    figure.notes.push_back(runs[n].label + ": RMS " + FormatFixed(errors.position_m.rmse, 3) +
-                           " m, " + FormatFixed(errors.orientation_deg.rmse, 3) + " deg.");
+    figure.notes.push_back(runs[n].label + ": RMS " + Scientific3(errors.position_m.rmse) + " m, " +
+                           Scientific3(errors.orientation_deg.rmse) + " deg.");
   }
   if (position.series.empty()) {
     throw InputError(runs.front().folder.string() + " and its like have no aligned error to draw");

@@ -55,15 +55,16 @@ double NormalDensity(double x) {
 }
 
 // Of one sequence: sum over t of z(t) z(t + lag) over sum of z^2, for lags 0, 1, ...
-void AddAutocorrelation(const std::vector<double>& z, std::vector<double>* sums) {
+bool AddAutocorrelation(const std::vector<double>& z, std::vector<double>* sums) {
   double squares = 0.0;
   for (const double value : z) squares += value * value;
-  if (!(squares > 0.0)) return;
+  if (!(squares > 0.0)) return false;  // no error at all
   for (std::size_t lag = 0; lag < sums->size() && lag < z.size(); ++lag) {
     double products = 0.0;
     for (std::size_t i = 0; i + lag < z.size(); ++i) products += z[i] * z[i + lag];
     (*sums)[lag] += products / squares;
   }
+  return true;
 }
 
 }  // namespace
@@ -145,15 +146,16 @@ Figure WhitenessFigure(const FigureInput& input) {
       const auto lags =
           std::min(t_s.size() / 2, static_cast<std::size_t>(kLongestLagSeconds / step_s) + 1);
       std::vector<double> sums(lags, 0.0);
+      int sequences = 0;
       for (const NormalizedErrors& run : of) {
         for (const std::vector<double>& sequence : position ? run.p : run.theta) {
-          AddAutocorrelation(sequence, &sums);
+          if (AddAutocorrelation(sequence, &sums)) ++sequences;
         }
       }
       std::vector<double> lag_s;
       for (std::size_t i = 0; i < lags; ++i) {
         lag_s.push_back(static_cast<double>(i) * step_s);
-        sums[i] /= 3.0 * static_cast<double>(of.size());
+        sums[i] /= std::max(1, sequences);
       }
       if (lags > 0) last_s = std::max(last_s, lag_s.back());
       panel.series.push_back(
