@@ -26,11 +26,13 @@ Figure ErrorFigure(const FigureInput& input, bool position) {
     figure.panels.push_back(std::move(panel));
   }
   bool aligned = false;
+  bool by_first = false;
   double last_s = 0.0;
   for (std::size_t n = 0; n < runs.size(); ++n) {
     const ErrorsOverTime errors = ErrorsOf(runs[n]);
     if (errors.t_s.empty()) continue;
     aligned = aligned || errors.aligned;
+    by_first = by_first || errors.by_first;
     last_s = std::max(last_s, errors.t_s.back());
     const Look look = LookOfEstimator(runs[n].where.estimator, n);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -56,8 +58,9 @@ Figure ErrorFigure(const FigureInput& input, bool position) {
   figure.notes.push_back(position ? "Error: true minus estimate, axes of G."
                                   : "Error: θ of R_true = Exp(θ) R_estimate, axes of G.");
   if (aligned) {
-    figure.notes.push_back(
-        "Laid onto the truth by position and yaw first: σ counts from the estimator's own start.");
+    figure.notes.push_back(std::string("Laid onto the truth by ") +
+                           (by_first ? "its first position and its yaw" : "position and yaw") +
+                           " first: σ counts from the estimator's own start.");
   }
   if (runs.size() < all.size() && !runs.front().study.empty()) {
     figure.notes.push_back("One example of " + std::to_string(all.size()) +

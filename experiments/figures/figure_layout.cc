@@ -251,7 +251,7 @@ FigureLayout LayOut(const Figure& figure) {
       for (auto& [value, text] : placed.x.ticks) text.clear();
       down += kPanelGapMm;
     } else {
-      down += kTickGapMm + kLineHeightMm + 0.5;
+      down += kTickGapMm + kLineHeightMm + 0.9;
       for (const std::string& line : WrapText(panel.x.label, width + 3.0)) {
         placed.x_label.push_back({0.5 * (left + right), down + 0.5 * kLineHeightMm, line});
         down += kLineHeightMm;

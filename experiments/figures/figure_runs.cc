@@ -324,6 +324,16 @@ std::vector<StampedPose> TrajectoryOf(const FigureRun& run) {
   return poses;
 }
 
+Alignment AlignOrFirst(const std::vector<PosePair>& pairs, AlignmentMode mode, bool* by_first) {
+  const AlignmentResult fit = Align(pairs, mode);
+  *by_first = !fit.alignment.has_value();
+  if (fit.alignment) return *fit.alignment;
+  Alignment alignment{.mode = mode};
+  alignment.R_GE = FitYawToOrientations(pairs).value_or(Eigen::Quaterniond::Identity());
+  alignment.p_GE = pairs.front().T_GB_true.p - alignment.R_GE * pairs.front().T_EB.p;
+  return alignment;
+}
+
 ErrorsOverTime ErrorsOf(const FigureRun& run) {
   const std::vector<RecordedCovariance> covariances = CovariancesOf(run);
   const Association association = Associate(TruthOf(run).poses, TrajectoryOf(run), {});
@@ -331,9 +341,8 @@ ErrorsOverTime ErrorsOf(const FigureRun& run) {
   Alignment laid;
   Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();
   errors.aligned = !StartsInTruthsAxes(run);
-  if (errors.aligned) {
-    const AlignmentResult fit = Align(association.pairs, AlignmentMode::kPositionYaw);
-    if (fit.alignment) laid = *fit.alignment;
+  if (errors.aligned && !association.pairs.empty()) {
+    laid = AlignOrFirst(association.pairs, AlignmentMode::kPositionYaw, &errors.by_first);
     turned = FitYawToOrientations(association.pairs).value_or(turned);
   }
   const nlohmann::ordered_json manifest = ReadJsonFile(run.folder / "manifest.json");

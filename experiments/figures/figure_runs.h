@@ -12,6 +12,7 @@
 
 #include "common/dataset/ground_truth.h"
 #include "common/dataset/recording.h"
+#include "evaluation/alignment.h"
 #include "evaluation/consistency.h"
 #include "evaluation/study_result.h"
 
@@ -66,6 +67,12 @@ struct RecordTable {
 /// The estimate; empty where the run had no state.
 [[nodiscard]] std::vector<StampedPose> TrajectoryOf(const FigureRun& run);
 
+/// x_G = R_GE x_E + p_GE by `mode`; where the path does not determine that (it stands still), the
+/// yaw is fitted to the orientations and the first positions are laid onto one another, and
+/// `by_first` says so. `pairs` must not be empty.
+[[nodiscard]] Alignment AlignOrFirst(const std::vector<PosePair>& pairs, AlignmentMode mode,
+                                     bool* by_first);
+
 /// True minus estimate over time, with the standard deviations that the estimator gave itself, in
 /// G.
 struct ErrorsOverTime {
@@ -75,6 +82,7 @@ struct ErrorsOverTime {
   /// The estimate was laid onto the truth by position and yaw before, since it did not start in the
   /// truth's axes; its standard deviations count from its own start.
   bool aligned = false;
+  bool by_first = false;  ///< AlignOrFirst's
 };
 /// Throws InputError that says how to run where the record has no covariance.csv.
 [[nodiscard]] ErrorsOverTime ErrorsOf(const FigureRun& run);

@@ -1,5 +1,6 @@
 #include "experiments/figures/figure_style.h"
 
+#include <cctype>
 #include <sstream>
 
 namespace duet {
@@ -56,9 +57,21 @@ double TextWidthMm(std::string_view text) {
 }
 
 std::vector<std::string> WrapText(const std::string& text, double width_mm) {
+  // A number and its unit stay together.
+  constexpr std::size_t kLongestUnit = 4;
+  std::vector<std::string> words;
+  std::istringstream in(text);
+  for (std::string word; in >> word;) {
+    const bool unit = word.size() <= kLongestUnit && !words.empty() &&
+                      std::isdigit(static_cast<unsigned char>(words.back().back())) != 0;
+    if (unit) {
+      words.back() += " " + word;
+    } else {
+      words.push_back(word);
+    }
+  }
   std::vector<std::string> lines;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
+  for (const std::string& word : words) {
     if (!lines.empty() && TextWidthMm(lines.back() + " " + word) <= width_mm) {
       lines.back() += " " + word;
     } else {

@@ -78,10 +78,13 @@ void ThinLines(Figure* figure) {
       if (series.kind != SeriesKind::kLine && series.kind != SeriesKind::kBand) continue;
       std::vector<std::span<const double>> columns(series.columns.begin(), series.columns.end());
       // Along a time axis only what is above it has extremes.
+      std::size_t most_rows = kMostRows;
       if (std::is_sorted(series.columns[0].begin(), series.columns[0].end())) {
         columns.erase(columns.begin());
+      } else {
+        most_rows *= 4;  // a path turns in both
       }
-      const std::vector<std::size_t> rows = ThinnedRows(columns);
+      const std::vector<std::size_t> rows = ThinnedRows(columns, most_rows);
       for (std::vector<double>& column : series.columns) column = RowsOf(column, rows);
     }
   }

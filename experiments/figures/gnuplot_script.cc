@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "common/support/numeric_text.h"
@@ -20,13 +21,16 @@ std::string Colour(int index) {
   return std::string("rgb '#") + kColours[static_cast<std::size_t>(index)].hex + "'";
 }
 
-// Dash lengths count in half widths of the line for gnuplot.
+// Dash lengths count in half widths of the line for gnuplot. Ends are round (a flat one shows the
+// first, tiny step that its cairo terminals make), which lengthens every dash by a width.
 std::string LineLook(const Look& look) {
   std::string text = "lw " + FormatFixed(look.width_pt, 2) + " lc " + Colour(look.colour) + " dt ";
   const std::vector<double>& lengths = DashLengths(look.dash);
   if (lengths.empty()) return text + "1";
   std::string list;
-  for (const double length : lengths) {
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    const double length =
+        i % 2 == 0 ? std::max(0.02, lengths[i] - look.width_pt) : lengths[i] + look.width_pt;
     list += (list.empty() ? "(" : ",") + FormatFixed(2.0 * length / look.width_pt, 2);
   }
   return text + list + ")";
@@ -74,15 +78,15 @@ class ScriptWriter {
     };
     const std::string font = std::string("font '") + kFont + ",";
     const auto scaled = [](double dpi) { return FormatFixed(dpi / 72.0, 4); };
-    text_ += "  if (form eq 'svg') { set terminal svg noenhanced size " +
+    text_ += "  if (form eq 'svg') { set terminal svg noenhanced rounded size " +
              pixels(layout_.width, kSvgDotsPerInch) + "," +
              pixels(layout_.height, kSvgDotsPerInch) + " " + font +
              FormatFixed(kLetteringPt * kSvgDotsPerInch / 72.0, 2) + "' linewidth " +
              scaled(kSvgDotsPerInch) + " background rgb 'white' }\n";
-    text_ += "  if (form eq 'pdf') { set terminal pdfcairo noenhanced size " +
+    text_ += "  if (form eq 'pdf') { set terminal pdfcairo noenhanced rounded size " +
              FormatFixed(layout_.width / 10.0, 3) + "cm," + FormatFixed(layout_.height / 10.0, 3) +
              "cm " + font + FormatFixed(kLetteringPt, 0) + "' fontscale 0.75 linewidth 2 }\n";
-    text_ += "  if (form eq 'png') { set terminal pngcairo noenhanced size " +
+    text_ += "  if (form eq 'png') { set terminal pngcairo noenhanced rounded size " +
              pixels(layout_.width, kPngDotsPerInch) + "," +
              pixels(layout_.height, kPngDotsPerInch) + " " + font + FormatFixed(kLetteringPt, 0) +
              "' fontscale " + FormatFixed(kPngDotsPerInch / kSvgDotsPerInch, 4) + " linewidth " +

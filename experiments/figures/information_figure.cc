@@ -32,7 +32,7 @@ void AddSpectrum(const std::string& name, const Look& look, const std::vector<do
   std::vector<double> index;
   for (std::size_t i = 0; i < spectrum.size(); ++i) index.push_back(static_cast<double>(i + 1));
   Look points = look;
-  points.width_pt = 1.0;
+  points.width_pt = panel->series.empty() ? 1.6 : 0.9;  // where they coincide both are seen
   panel->series.push_back(PointSeries(name, name, points, index, spectrum));
 }
 

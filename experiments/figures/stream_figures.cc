@@ -152,7 +152,7 @@ Figure ParallaxFigure(const FigureInput& input) {
     if (parallax.observations > 1) degrees.push_back(parallax.largest_rad * kDegreesARadian);
   }
   if (degrees.empty()) throw InputError(stream.source + ": no track was seen twice");
-  const double bin = RoundBin(*std::max_element(degrees.begin(), degrees.end()), 0.1);
+  const double bin = RoundBin(*std::max_element(degrees.begin(), degrees.end()), 1e-3);
   Figure figure = HistogramFigure(stream, degrees, bin, "largest parallax of a track [deg]",
                                   "parallax in degrees,");
   figure.notes.push_back(

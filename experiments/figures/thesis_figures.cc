@@ -268,7 +268,7 @@ Figure Thesis54Figure(const FigureInput& input) {
   Panel panel{.x = {.label = "time of the IMU's clock [ms]", .low = low_ms, .high = high_ms},
               .y = {.label = "row k from the middle [px]", .low = -1.1 * half, .high = 1.4 * half},
               .height_mm = 42.0};
-  panel.series = {stamps, readout, offset, middle, names};
+  panel.series = {readout, stamps, offset, middle, names};
   figure.panels = {panel};
   char text[128];
   std::snprintf(text, sizeof(text), "t_d = %.4g ms, t_r = %.4g ms, N = %d.", 1e3 * t_d_s,

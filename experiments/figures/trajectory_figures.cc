@@ -26,11 +26,12 @@ Path PathOf(const std::vector<StampedPose>& poses) {
 // The estimate after the alignment that its errors are taken with.
 std::vector<StampedPose> Aligned(const std::vector<StampedPose>& truth,
                                  std::vector<StampedPose> estimate, AlignmentMode mode,
-                                 bool* aligned) {
-  const AlignmentResult fit = Align(Associate(truth, estimate, {}).pairs, mode);
-  *aligned = fit.alignment.has_value();
-  if (!fit.alignment) return estimate;
-  for (StampedPose& pose : estimate) pose.T_GB.p = fit.alignment->Apply(pose.T_GB.p);
+                                 bool* by_first) {
+  const std::vector<PosePair> pairs = Associate(truth, estimate, {}).pairs;
+  *by_first = false;
+  if (pairs.empty()) return estimate;
+  const Alignment alignment = AlignOrFirst(pairs, mode, by_first);
+  for (StampedPose& pose : estimate) pose.T_GB.p = alignment.Apply(pose.T_GB.p);
   return estimate;
 }
 
@@ -70,7 +71,7 @@ Figure TrajectoryFigure(const FigureInput& input, const View& view) {
   Timestamp start = 0;
   Timestamp end = 0;
   std::vector<StampedPose> truth;
-  bool all_aligned = true;
+  bool any_by_first = false;
   for (const FigureRun& run : runs) {
     std::vector<StampedPose> poses = TrajectoryOf(run);
     if (poses.empty()) continue;
@@ -81,9 +82,9 @@ Figure TrajectoryFigure(const FigureInput& input, const View& view) {
     }
     start = std::min(start, poses.front().timestamp);
     end = std::max(end, poses.back().timestamp);
-    bool aligned = false;
-    const Path path = PathOf(Aligned(truth, std::move(poses), view.mode, &aligned));
-    all_aligned = all_aligned && aligned;
+    bool by_first = false;
+    const Path path = PathOf(Aligned(truth, std::move(poses), view.mode, &by_first));
+    any_by_first = any_by_first || by_first;
     estimates.push_back(LineSeries(run.label, run.label,
                                    LookIn(view, run.where.estimator, estimates.size()),
                                    path.along[view.across], path.along[view.up]));
@@ -115,9 +116,8 @@ Figure TrajectoryFigure(const FigureInput& input, const View& view) {
       std::clamp(kAboutWidthMm * (high[1] - low[1]) / std::max(1e-6, high[0] - low[0]), 30.0, 80.0);
   panel.equal_scale = true;
   figure.panels.push_back(std::move(panel));
-  figure.notes.push_back(all_aligned ? std::string("Each estimate laid onto the truth by ") +
-                                           view.alignment + "."
-                                     : "Not aligned: the path does not determine it.");
+  figure.notes.push_back(std::string("Each estimate laid onto the truth by ") +
+                         (any_by_first ? "its first position and its yaw" : view.alignment) + ".");
   return figure;
 }
 
