@@ -20,5 +20,6 @@ namespace duet {
 [[nodiscard]] Command StudyCommand();
 [[nodiscard]] Command VerifyCommand();
 [[nodiscard]] Command TuneCommand();
+[[nodiscard]] Command FigureCommand();
 
 }  // namespace duet

@@ -19,7 +19,7 @@ int Run(int argc, char** argv) {
   try {
     return Dispatch({CompareCommand(), TrackCommand(), RunCommand(), EvaluateCommand(),
                      CheckCommand(), ObservabilityCommand(), AblateCommand(), StudyCommand(),
-                     VerifyCommand(), TuneCommand(), SimulateCommand(), MonteCarloCommand(),
+                     VerifyCommand(), TuneCommand(), FigureCommand(), SimulateCommand(), MonteCarloCommand(),
                      TrackErrorCommand(), AllanCommand(), ConfigCommand()},
                     argc, argv);
   } catch (const InputError& error) {
