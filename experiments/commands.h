@@ -17,5 +17,6 @@ namespace duet {
 [[nodiscard]] Command AllanCommand();
 [[nodiscard]] Command AblateCommand();
 [[nodiscard]] Command ObservabilityCommand();
+[[nodiscard]] Command ReportCommand();
 
 }  // namespace duet
