@@ -3,6 +3,13 @@
 import {button, dropDown, element, labelled, significant} from './dom.js';
 import {swatch} from './plots.js';
 
+// The table is narrow: the metrics' full titles stand in the tables and over the dots.
+const kShort = {
+  'ate.position_m': 'position [m]',
+  'ate.orientation_deg': 'orientation [deg]',
+  'nees.pose': 'NEES pose',
+  coverage_share: 'coverage',
+};
 const kLabels = {
   stream: 'stream', estimator: 'estimator', setting: 'setting', perturbation: 'perturbation', seed: 'seed',
 };
@@ -23,9 +30,9 @@ export class Chooser {
   }
 
   shownMetrics() {
-    const wanted = ['ate.position_m', 'ate.orientation_deg', 'nees.pose', 'coverage_share'];
+    const wanted = Object.keys(kShort);
     return wanted.filter((key) => this.store.data.runs.some((run) => run.metrics.has(key)))
-        .map((key) => ({key, ...(this.store.data.metrics[key] ?? {label: key})}));
+        .map((key) => ({key, label: kShort[key]}));
   }
 
   build() {
@@ -61,7 +68,7 @@ export class Chooser {
     const sortable = (column) => {
       const active = this.order?.key === column.key;
       const sorted = active ? (this.order.down ? 'descending' : 'ascending') : 'none';
-      return element('th', {scope: 'col', 'aria-sort': sorted}, button(column.label, () => {
+      return element('th', {scope: 'col', 'aria-sort': sorted, class: column.key in kShort ? 'number' : null}, button(column.label, () => {
         this.order = {key: column.key, down: active && !this.order.down};
         this.fill();
         this.head.querySelectorAll('button')[columns.indexOf(column)].focus();

@@ -31,8 +31,6 @@ function makeView(host, store, names) {
   });
   const context = openWebGl(canvas);
   if (context) return new Trajectories(host, store, context, canvas, names);
-  host.append(element('p', {class: 'note no-webgl', role: 'note'},
-                      'This browser shows no WebGL: the trajectories are seen from above only.'));
   return new TopView(host, store);
 }
 
@@ -52,7 +50,10 @@ function trajectoriesPart(store, names) {
     view.rebuild();
   }});
   const bar = element('div', {class: 'bar'});
-  if (!flat) {
+  if (flat) {
+    bar.append(element('span', {class: 'note no-webgl', role: 'note'},
+                       'This browser shows no WebGL: the trajectories are seen from above only.'));
+  } else {
     bar.append(...[['corner', 'Whole'], ['top', 'From above'], ['side', 'From the side']].map(
         ([name, text]) => button(text, () => view.view(name))));
   }
@@ -121,7 +122,9 @@ function start() {
               element('section', {'aria-label': 'Trajectories'}, trajectories.part)),
       element('div', {class: 'sticky'}, time, values),
       element('section', {'aria-label': 'Errors over time'}, plots));
-  if (!chooser) explorer.querySelector('.explore-grid').classList.add('single');
+  const grid = explorer.querySelector('.explore-grid');
+  grid.classList.toggle('single', !chooser);
+  grid.classList.toggle('few', data.runs.length <= 3);
 
   store.time = Infinity;
   store.chooseOnly(firstChoice(data));

@@ -186,6 +186,7 @@ export class Plots {
         {...axis, label: last ? 'time [s]' : null, labelSize: last ? 18 : 0,
          size: last ? 26 : 6, values: last ? undefined : (_, ticks) => ticks.map(() => '')},
         {...axis, label: quantity.label, labelSize: 18, size: 54,
+         ...(quantity.logarithmic ? {splits: (_, i, low, high) => decades(low, high), filter: (_, ticks) => ticks} : {}),
          values: quantity.logarithmic ? (_, ticks) => ticks.map(powerOfTen)
                                       : (_, ticks) => ticks.map((v) => String(+v.toPrecision(6)))},
       ],
@@ -199,6 +200,7 @@ export class Plots {
           plot.over.append(line);
           plot.over.addEventListener('mouseleave', () => this.store.setPeek(null));
           this.setTimeOnClick(plot);
+          this.placeScrubber();  // uPlot has its scales only now
         }],
       },
     };
@@ -293,7 +295,7 @@ export class Plots {
     for (const {plot, line} of this.plots) {
       if (!line) continue;
       const left = plot.valToPos(this.store.time, 'x');
-      line.hidden = !(left >= 0 && left <= plot.over.clientWidth);
+      line.hidden = !(left > -1 && left < plot.over.clientWidth + 1);
       line.style.transform = `translateX(${Math.round(left)}px)`;
     }
   }
@@ -327,10 +329,16 @@ function logRange(low, high, band) {
   return [10 ** Math.floor(Math.log10(least)), 10 ** Math.ceil(Math.log10(most))];
 }
 
+function decades(low, high) {
+  const from = Math.round(Math.log10(low));
+  const count = Math.round(Math.log10(high)) - from;
+  const every = Math.ceil(count / 5);
+  return Array.from({length: Math.floor(count / every) + 1}, (_, i) => 10 ** (from + i * every));
+}
+
 function powerOfTen(value) {
-  if (value === null || value === undefined) return '';
+  if (value === null) return '';
   const exponent = Math.log10(value);
-  if (Math.abs(exponent - Math.round(exponent)) > 1e-9) return '';
   return value >= 0.01 && value <= 1000 ? String(+value.toPrecision(1)) : `1e${Math.round(exponent)}`;
 }
 

@@ -132,16 +132,15 @@ export class Trajectories {
     this.content.add(new LineSegments(geometry, new LineBasicMaterial({color})));
 
     const name = (value) => String(+value.toFixed(6));
-    const every = (from, to) => (Math.round((to - from) / step) > 6 ? 2 : 1) * step;
-    for (let x = low[0]; x <= high[0] + 1e-9; x += every(low[0], high[0])) {
-      this.label(name(x), x, low[1] - 0.35 * step, floor);
-    }
-    for (let y = low[1]; y <= high[1] + 1e-9; y += every(low[1], high[1])) {
-      this.label(name(y), high[0] + 0.35 * step, y, floor);
-    }
-    for (let z = floor + step; z <= top + 1e-9; z += every(floor, top)) {
-      this.label(name(z), low[0], high[1] + 0.25 * step, z);
-    }
+    const ticks = (from, to) => {
+      const every = Math.round((to - from) / step) > 6 ? 2 : 1;
+      const first = Math.ceil(Math.round(from / step) / every) * every;
+      const count = Math.floor((Math.round(to / step) - first) / every) + 1;
+      return Array.from({length: count}, (_, i) => (first + i * every) * step);
+    };
+    for (const x of ticks(low[0], high[0])) this.label(name(x), x, low[1] - 0.35 * step, floor);
+    for (const y of ticks(low[1], high[1])) this.label(name(y), high[0] + 0.35 * step, y, floor);
+    for (const z of ticks(floor, top)) this.label(name(z), low[0], high[1] + 0.25 * step, z);
     this.label('x [m]', (low[0] + high[0]) / 2, low[1] - 1.0 * step, floor, 'axis-name');
     this.label('y [m]', high[0] + 1.0 * step, (low[1] + high[1]) / 2, floor, 'axis-name');
     this.label('z [m]', low[0], high[1] + 0.25 * step, top + 0.5 * step, 'axis-name');
@@ -242,19 +241,41 @@ export class Trajectories {
     this.draw();
   }
 
-  /** 'corner', 'top' or 'side'. */
+  /** 'corner', 'top' or 'side': from there, as near as all of it is seen. */
   view(name) {
-    const direction = {corner: [0.55, -0.85, 0.55], top: [0, -1e-4, 1], side: [0, -1, 0.02]}[name];
-    const {center, radius} = this.bounds;
-    const aspect = this.camera.aspect || 1;
-    const half = Math.tan((this.camera.fov * Math.PI) / 360);
-    const distance = (1.06 * radius) / Math.min(half, half * aspect) / (name === 'corner' ? 1.12 : 1);
-    this.controls.target.set(...center);
-    this.camera.position.set(...center).add(new Vector3(...direction).normalize().multiplyScalar(distance));
-    this.camera.near = distance / 1000;
-    this.camera.far = distance * 100;
-    this.camera.updateProjectionMatrix();
-    this.controls.update();
+    const direction = {corner: [0.5, -0.85, 0.5], top: [0, -1e-4, 1], side: [0, -1, 0.02]}[name];
+    const {low, high, floor, step, radius} = this.bounds;
+    const corners = [];
+    for (const x of [low[0] - 0.8 * step, high[0] + 1.4 * step]) {
+      for (const y of [low[1] - 1.4 * step, high[1] + 0.3 * step]) {
+        for (const z of [floor, high[2] + 0.3 * step]) corners.push(new Vector3(x, y, z));
+      }
+    }
+    const center = corners.reduce((sum, c) => sum.add(c), new Vector3()).divideScalar(corners.length);
+    const away = new Vector3(...direction).normalize();
+    let distance = 4 * radius;
+    for (let round = 0; round < 6; ++round) {
+      this.camera.near = distance / 1000;
+      this.camera.far = distance * 100;
+      this.camera.updateProjectionMatrix();
+      this.controls.target.copy(center);
+      this.camera.position.copy(center).addScaledVector(away, distance);
+      this.controls.update();
+      this.camera.updateMatrixWorld();
+      const reach = {low: [Infinity, Infinity], high: [-Infinity, -Infinity]};
+      for (const corner of corners) {
+        const {x, y} = corner.clone().project(this.camera);
+        reach.low = [Math.min(reach.low[0], x), Math.min(reach.low[1], y)];
+        reach.high = [Math.max(reach.high[0], x), Math.max(reach.high[1], y)];
+      }
+      const half = [0, 1].map((k) => (reach.high[k] - reach.low[k]) / 2);
+      const middle = [0, 1].map((k) => (reach.high[k] + reach.low[k]) / 2);
+      const unit = distance * Math.tan((this.camera.fov * Math.PI) / 360);
+      const right = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0);
+      const up = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
+      center.addScaledVector(right, middle[0] * unit * this.camera.aspect).addScaledVector(up, middle[1] * unit);
+      distance *= Math.max(...half) / 0.95;
+    }
     this.draw();
   }
 

@@ -1,7 +1,8 @@
 // One metric over all runs: a column of dots for each estimator, setting and perturbation, the median
 // as a bar. A click on a dot shows the run.
 
-import {button, dropDown, element, labelled, significant} from './dom.js';
+import {dropDown, element, labelled, significant} from './dom.js';
+import {gridStep} from './layout.js';
 import {kSlots} from './store.js';
 import {slotColor} from './plots.js';
 
@@ -21,6 +22,13 @@ function svg(tag, attributes, ...children) {
 function median(sorted) {
   const middle = sorted.length >> 1;
   return sorted.length % 2 === 1 ? sorted[middle] : (sorted[middle - 1] + sorted[middle]) / 2;
+}
+
+function roundTicks(from, to) {
+  const step = gridStep(to - from, 5);
+  const first = Math.ceil(from / step - 1e-9);
+  const count = Math.floor(to / step + 1e-9) - first + 1;
+  return Array.from({length: count}, (_, i) => +((first + i) * step).toPrecision(6));
 }
 
 export class Spread {
@@ -78,10 +86,10 @@ export class Spread {
       return sorted.length === 0 ? `${name}: none` : `${name}: median ${significant(median(sorted))} of ${sorted.length}`;
     }).join('; '));
     const ticks = logarithmic ? Array.from({length: to - from + 1}, (_, i) => 10 ** (from + i)) :
-                                [0, 0.25, 0.5, 0.75, 1].map((share) => from + share * (high - from));
+                                roundTicks(from, to);
     for (const tick of ticks) {
       drawing.append(svg('line', {x1: kLeft, x2: kWidth, y1: y(tick), y2: y(tick), class: 'rule'}),
-                     svg('text', {x: kLeft - 6, y: y(tick) + 4, class: 'tick', 'text-anchor': 'end'}, significant(tick, 2)));
+                     svg('text', {x: kLeft - 6, y: y(tick) + 4, class: 'tick', 'text-anchor': 'end'}, String(tick)));
     }
     columns.forEach(([name, points], c) => {
       const middle = kLeft + (c + 0.5) * wide;

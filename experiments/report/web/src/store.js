@@ -87,7 +87,7 @@ export class Store {
   }
 
   settle() {
-    this.time = Math.min(Math.max(this.time, this.earliest), this.duration);
+    if (this.chosen.length > 0) this.time = Math.min(Math.max(this.time, this.earliest), this.duration);
     this.peek = null;
     this.tell('choice');
     this.tell('time');

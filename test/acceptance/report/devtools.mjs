@@ -154,9 +154,9 @@ export class Browser {
     await this.settle();
   }
 
-  /** PNG bytes of what is seen, or of the whole page. */
-  async screenshot(whole = false) {
-    const {data} = await this.send('Page.captureScreenshot', {format: 'png', captureBeyondViewport: whole});
+  /** PNG bytes of what is seen. */
+  async screenshot(options = {}) {
+    const {data} = await this.send('Page.captureScreenshot', {format: 'png', ...options});
     return Buffer.from(data, 'base64');
   }
 
