@@ -18,5 +18,6 @@ namespace duet {
 [[nodiscard]] Command AblateCommand();
 [[nodiscard]] Command ObservabilityCommand();
 [[nodiscard]] Command ReportCommand();
+[[nodiscard]] Command StudyCommand();
 
 }  // namespace duet

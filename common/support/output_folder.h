@@ -5,8 +5,8 @@
 namespace duet {
 
 /// An output folder that is complete or absent (DESIGN.md section 4): everything is written into a
-/// sibling `TARGET.partial-<pid>`, which Commit() renames to the target. Without Commit() the
-/// destructor removes it.
+/// sibling `TARGET.partial-<host>-<pid>`, which Commit() renames to the target. Without Commit()
+/// the destructor removes it.
 class OutputFolder {
  public:
   /// Makes the temporary folder, and the target's parents where they are missing. Throws
@@ -24,10 +24,18 @@ class OutputFolder {
   /// meanwhile.
   void Commit();
 
+  /// The same for a target that others may be making too, on other machines of a shared folder as
+  /// well: false where one of them was first; its folder stays, this one is removed.
+  [[nodiscard]] bool CommitUnlessThere();
+
  private:
   std::filesystem::path target_;
   std::filesystem::path partial_;
   bool committed_ = false;
 };
+
+/// The partial folders in `folder` that processes of this machine have left which are no more.
+/// Those of other machines, and of processes that run, are left alone.
+void RemoveAbandonedPartials(const std::filesystem::path& folder);
 
 }  // namespace duet
