@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "evaluation/study_result.h"
+#include "evaluation/study_table.h"
 #include "experiments/report/run_curves.h"
 
 namespace duet {
@@ -38,6 +39,7 @@ struct Report {
   std::string title;
   std::string question;
   std::vector<std::string> summary;  ///< sentences
+  std::vector<StudyTable> tables;
   std::vector<ReportText> texts;
   std::vector<ReportFigure> figures;
   std::vector<ReportRun> runs;

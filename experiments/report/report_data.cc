@@ -8,6 +8,7 @@
 #include "evaluation/chi_squared.h"
 #include "evaluation/consistency.h"
 #include "evaluation/evaluate.h"
+#include "evaluation/metrics.h"
 
 namespace duet {
 namespace {
@@ -58,6 +59,19 @@ Json RunJson(const ReportRun& report_run, Timestamp origin) {
   return json;
 }
 
+// What the keys of any run mean; a key that is unknown stands for itself.
+Json MetricsJson(const Report& report) {
+  Json json = Json::object();
+  for (const ReportRun& run : report.runs) {
+    for (const auto& [key, value] : run.run.metrics) {
+      if (json.contains(key)) continue;
+      const std::optional<Metric> metric = FindMetric(key);
+      json[key] = {{"label", metric ? metric->Title() : key}};
+    }
+  }
+  return json;
+}
+
 // The first instant of all runs on a stream: they are shown over one time.
 std::map<std::string, Timestamp> OriginsOf(const std::vector<ReportRun>& runs) {
   std::map<std::string, Timestamp> origins;
@@ -84,7 +98,7 @@ std::string ReportDataJson(const Report& report) {
                {"columns", kCurveColumns},
                {"estimators", std::move(estimators)},
                {"alignment", report.started_from_truth ? "none" : "posyaw"},
-               {"metrics", Json::object()},
+               {"metrics", MetricsJson(report)},
                {"nees", NeesJson()}};
   std::map<std::string, Timestamp> origins = OriginsOf(report.runs);
   Json runs = Json::array();

@@ -4,6 +4,7 @@
 #include "experiments/report/page_text.h"
 #include "experiments/report/report.h"
 #include "experiments/report/report_data.h"
+#include "experiments/report/table_html.h"
 #include "experiments/report/web_bundle.h"
 
 namespace duet {
@@ -35,6 +36,8 @@ std::string Head(const Report& report, const WebBundle& bundle) {
   return html;
 }
 
+bool HasTables(const Report& report) { return !report.texts.empty() || !report.tables.empty(); }
+
 std::string PageHeader(const Report& report) {
   std::string html =
       "<a class=\"skip\" href=\"#main\">Skip to the report</a>\n<header class=\"page\">\n";
@@ -47,7 +50,7 @@ std::string PageHeader(const Report& report) {
   };
   link("summary", "Summary");
   link("explore", "Runs in space and over time");
-  if (!report.texts.empty()) link("tables", "Tables");
+  if (HasTables(report)) link("tables", "Tables");
   if (!report.figures.empty()) link("figures", "Figures");
   link("records", "Records");
   return html + "</nav>\n</header>\n";
@@ -65,9 +68,12 @@ std::string Explorer() {
          "the rest of the page does not.</p></noscript>\n</section>\n";
 }
 
-std::string Texts(const Report& report) {
-  if (report.texts.empty()) return "";
+std::string Tables(const Report& report) {
+  if (!HasTables(report)) return "";
   std::string html = SectionStart("tables", "Tables");
+  for (const StudyTable& table : report.tables) {
+    html += Element("h3", table.name) + TableHtml(table);
+  }
   for (const ReportText& text : report.texts) {
     html += Element("h3", text.title) + Element("pre", text.text, "tabindex=\"0\"");
   }
@@ -112,7 +118,7 @@ std::string Records(const Report& report, const WebBundle& bundle) {
 std::string ReportPage(const Report& report) {
   const WebBundle bundle = GetWebBundle();
   std::string html = Head(report, bundle) + "<body>\n" + PageHeader(report) +
-                     "<main id=\"main\">\n" + Summary(report) + Explorer() + Texts(report) +
+                     "<main id=\"main\">\n" + Summary(report) + Explorer() + Tables(report) +
                      Figures(report) + "</main>\n" + Records(report, bundle);
   html += "<script type=\"application/json\" id=\"report-data\">" +
           EscapeScriptJson(ReportDataJson(report)) + "</script>\n<script>";
