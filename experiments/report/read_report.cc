@@ -74,21 +74,13 @@ RecordedTruth ReadTruthOf(const fs::path& record, const ManifestReader& manifest
   return {std::move(recording.truth), !fs::exists(recording.folder / "cam0")};
 }
 
-/// How many instants of each run leave the page below kMostReportBytes.
-std::size_t InstantsOfEach(const Report& report) {
-  const std::size_t runs = std::max<std::size_t>(1, report.runs.size());
-  const std::size_t used = ReportPage(report).size() + runs * kBytesBesideCurves;
-  const std::size_t left = used < kMostReportBytes ? kMostReportBytes - used : 0;
-  return std::clamp(left / runs / EncodedSize(1), kFewestInstants, kMostInstants);
-}
-
 bool HasMetric(const StudyRun& run, std::string_view key) {
   return std::any_of(run.metrics.begin(), run.metrics.end(),
                      [key](const auto& metric) { return metric.first == key; });
 }
 
 void AddCurves(const fs::path& folder, Report* report) {
-  const std::size_t most = InstantsOfEach(*report);
+  const std::size_t most = InstantsThatFit(*report);
   std::size_t without_truth = 0;
   for (ReportRun& run : report->runs) {
     const fs::path record = report->kind == "run" ? folder : folder / run.record;
@@ -114,6 +106,13 @@ void AddCurves(const fs::path& folder, Report* report) {
 }
 
 }  // namespace
+
+std::size_t InstantsThatFit(const Report& report) {
+  const std::size_t runs = std::max<std::size_t>(1, report.runs.size());
+  const std::size_t used = ReportPage(report).size() + runs * kBytesBesideCurves;
+  const std::size_t left = used < kMostReportBytes ? kMostReportBytes - used : 0;
+  return std::clamp(left / runs / EncodedSize(1), kFewestInstants, kMostInstants);
+}
 
 Report ReadReport(const fs::path& given) {
   const fs::path folder = fs::weakly_canonical(given);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "common/support/text_file.h"
 #include "evaluation/metrics.h"
@@ -104,11 +105,35 @@ StudyTableOptions TableOptionsOf(const StudyFile& study) {
   return options;
 }
 
-std::string CountSentence(const StudyResult& result) {
-  const auto failed = std::count_if(result.runs.begin(), result.runs.end(),
-                                    [](const StudyRun& run) { return run.failed; });
-  return std::to_string(result.runs.size()) + " runs, " +
-         (failed == 0 ? "none" : std::to_string(failed)) + " of them failed.";
+/// "a, b and 3 more"
+std::string NamesOf(const StudyResult& result, const std::string StudyRun::*coordinate) {
+  constexpr std::size_t kMostNames = 6;
+  std::vector<std::string> names;
+  for (const StudyRun& run : result.runs) {
+    if (std::find(names.begin(), names.end(), run.*coordinate) == names.end()) {
+      names.push_back(run.*coordinate);
+    }
+  }
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMostNames); ++i) {
+    text += (i > 0 ? ", " : "") + names[i];
+  }
+  if (names.size() > kMostNames) {
+    text += " and " + std::to_string(names.size() - kMostNames) + " more";
+  }
+  return text;
+}
+
+/// What was run.
+std::string GridSentence(const StudyResult& result) {
+  std::set<int> seeds;
+  for (const StudyRun& run : result.runs) seeds.insert(run.seed);
+  return std::to_string(result.runs.size()) +
+         " runs. Streams: " + NamesOf(result, &StudyRun::stream) +
+         "; estimators: " + NamesOf(result, &StudyRun::estimator) +
+         "; settings: " + NamesOf(result, &StudyRun::setting) +
+         "; perturbations: " + NamesOf(result, &StudyRun::perturbation) +
+         "; seeds: " + std::to_string(seeds.size()) + ".";
 }
 
 }  // namespace
@@ -126,10 +151,13 @@ Report DescribeStudy(const fs::path& folder) {
   report.question = study.result.question;
   report.foot = study.result.foot;
   report.tables = MakeStudyTables(study.result, TableOptionsOf(file));
+  report.summary.push_back(GridSentence(study.result));
   for (const StudyTable& table : report.tables) {
-    if (!table.verdict.empty()) report.summary.push_back(table.verdict);
+    const auto said = std::find(report.summary.begin(), report.summary.end(), table.verdict);
+    if (!table.verdict.empty() && said == report.summary.end()) {
+      report.summary.push_back(table.verdict);
+    }
   }
-  report.summary.push_back(CountSentence(study.result));
   for (std::size_t i = 0; i < study.result.runs.size(); ++i) {
     const StudyRun& run = study.result.runs[i];
     const fs::path& record = study.record_of_run[i];

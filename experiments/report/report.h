@@ -52,6 +52,10 @@ struct Report {
 /// Bytes that a report may have; curves are thinned to what is left of them.
 inline constexpr std::size_t kMostReportBytes = 4'800'000;
 
+/// How many instants of each run leave the page below kMostReportBytes; `report` without curves. At
+/// least 60: the page of very many runs is larger.
+[[nodiscard]] std::size_t InstantsThatFit(const Report& report);
+
 /// The report of a study's folder, of a `duet compare` folder or of a run record. Throws
 /// InputError.
 [[nodiscard]] Report ReadReport(const std::filesystem::path& folder);

@@ -71,8 +71,14 @@ std::string Explorer() {
 std::string Tables(const Report& report) {
   if (!HasTables(report)) return "";
   std::string html = SectionStart("tables", "Tables");
-  for (const StudyTable& table : report.tables) {
-    html += Element("h3", table.name) + TableHtml(table);
+  std::string said;  // a metric's two tables have the same verdict
+  for (StudyTable table : report.tables) {
+    if (table.verdict == said) {
+      table.verdict.clear();
+    } else {
+      said = table.verdict;
+    }
+    html += Element("h3", table.title) + TableHtml(table);
   }
   for (const ReportText& text : report.texts) {
     html += Element("h3", text.title) + Element("pre", text.text, "tabindex=\"0\"");

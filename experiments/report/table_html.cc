@@ -49,8 +49,8 @@ std::string TableHtml(const StudyTable& table) {
     html += "<p class=\"verdict\">" + EscapeHtml(table.verdict) + "</p>\n";
   }
   html += "<div class=\"table-box\" tabindex=\"0\" role=\"region\" aria-label=\"" +
-          EscapeHtml(table.title) + "\">\n<table>\n<caption>" + EscapeHtml(table.title) +
-          "</caption>\n<thead>\n";
+          EscapeHtml(table.title) + "\">\n<table>\n<caption class=\"hidden\">" +
+          EscapeHtml(table.title) + "</caption>\n<thead>\n";
   const std::vector<ColumnGroup> groups = ColumnGroups(table);
   if (!groups.empty()) html += GroupsRow(table, groups);
   html += "<tr>";

@@ -1,5 +1,5 @@
-// One metric over all runs: a column of dots for each estimator, setting and perturbation, the median
-// as a bar. A click on a dot shows the run.
+// One metric over all runs: a row of dots for each stream, estimator, setting and perturbation, the
+// median as a bar. A click on a dot shows the run.
 
 import {dropDown, element, labelled, significant} from './dom.js';
 import {gridStep} from './layout.js';
@@ -7,10 +7,12 @@ import {kSlots} from './store.js';
 import {slotColor} from './plots.js';
 
 const kSvg = 'http://www.w3.org/2000/svg';
-const kWidth = 420;
-const kHeight = 190;
-const kLeft = 56;
-const kBottom = 40;
+const kWidth = 470;
+const kRow = 26;
+const kTop = 6;
+const kAxis = 36;
+const kRight = 14;
+const kLetter = 6.4;  // width of a letter of the labels, about
 
 function svg(tag, attributes, ...children) {
   const made = document.createElementNS(kSvg, tag);
@@ -77,10 +79,10 @@ export class Spread {
     const place = (v) => (logarithmic ? Math.log10(v) : v);
     const from = logarithmic ? Math.floor(place(low)) : Math.min(0, low);
     const to = logarithmic ? Math.ceil(place(high)) : high * 1.06 || 1;
-    const y = (v) => 8 + (1 - (place(v) - from) / (to - from || 1)) * (kHeight - kBottom - 8);
-    const wide = (kWidth - kLeft - 8) / columns.length;
-
-    const drawing = svg('svg', {viewBox: `0 0 ${kWidth} ${kHeight}`, class: 'spread-plot', role: 'img'});
+    const left = Math.min(210, 14 + kLetter * Math.max(...columns.map(([name]) => name.length)));
+    const x = (v) => left + ((place(v) - from) / (to - from || 1)) * (kWidth - kRight - left);
+    const bottom = kTop + kRow * columns.length;
+    const drawing = svg('svg', {viewBox: `0 0 ${kWidth} ${bottom + kAxis}`, class: 'spread-plot', role: 'img'});
     drawing.setAttribute('aria-label', `${this.title(this.key)} over all runs. ` + columns.map(([name, points]) => {
       const sorted = points.map(({value}) => value).sort((a, b) => a - b);
       return sorted.length === 0 ? `${name}: none` : `${name}: median ${significant(median(sorted))} of ${sorted.length}`;
@@ -88,33 +90,34 @@ export class Spread {
     const ticks = logarithmic ? Array.from({length: to - from + 1}, (_, i) => 10 ** (from + i)) :
                                 roundTicks(from, to);
     for (const tick of ticks) {
-      drawing.append(svg('line', {x1: kLeft, x2: kWidth, y1: y(tick), y2: y(tick), class: 'rule'}),
-                     svg('text', {x: kLeft - 6, y: y(tick) + 4, class: 'tick', 'text-anchor': 'end'}, String(tick)));
+      drawing.append(svg('line', {x1: x(tick), x2: x(tick), y1: kTop, y2: bottom, class: 'rule'}),
+                     svg('text', {x: x(tick), y: bottom + 14, class: 'tick', 'text-anchor': 'middle'}, String(tick)));
     }
     columns.forEach(([name, points], c) => {
-      const middle = kLeft + (c + 0.5) * wide;
-      const reach = Math.min(60, wide * 0.36);
+      const middle = kTop + (c + 0.5) * kRow;
+      const most = Math.floor((left - 14) / kLetter);
+      drawing.append(svg('text', {x: left - 8, y: middle + 4, class: 'tick', 'text-anchor': 'end'},
+                         name.length > most ? `${name.slice(0, most - 1)}…` : name, svg('title', {}, name)));
       const sorted = points.map(({value}) => value).sort((a, b) => a - b);
       if (sorted.length > 0) {
-        const m = y(median(sorted));
-        drawing.append(svg('line', {x1: middle - reach, x2: middle + reach, y1: m, y2: m, class: 'median'}));
+        const m = x(median(sorted));
+        drawing.append(svg('line', {x1: m, x2: m, y1: middle - kRow * 0.45, y2: middle + kRow * 0.45, class: 'median'}));
       }
       points.forEach(({run, value}, i) => {
-        const x = middle + reach * 0.85 * (points.length > 1 ? (2 * i) / (points.length - 1) - 1 : 0);
+        // Apart from one another, by their order: nothing is drawn at random.
+        const y = middle + kRow * 0.3 * (points.length > 1 ? (2 * i) / (points.length - 1) - 1 : 0);
         const chosen = this.store.chosen.find((item) => item.run === run);
         const own = kSlots[this.store.data.estimators.indexOf(run.estimator)] ?? kSlots[0];
         const dot = svg('circle', {
-          cx: x, cy: y(value), r: chosen ? 6 : 4, fill: slotColor(chosen?.slot ?? own),
+          cx: x(value), cy: y, r: chosen ? 5.5 : 3.5, fill: slotColor(chosen?.slot ?? own),
           class: chosen ? 'dot chosen' : run.failed ? 'dot failed' : 'dot',
         }, svg('title', {}, `${this.names(run)}: ${significant(value)}`));
         dot.addEventListener('click', () => this.store.choose(run, !this.store.isChosen(run)));
         drawing.append(dot);
       });
-      const label = name.length * 6.5 > wide ? `${name.slice(0, Math.max(3, Math.floor(wide / 6.5) - 1))}…` : name;
-      drawing.append(svg('text', {x: middle, y: kHeight - kBottom + 16, class: 'tick', 'text-anchor': 'middle'},
-                         label, svg('title', {}, name)));
     });
-    drawing.append(svg('text', {x: kLeft, y: kHeight - 6, class: 'tick'}, 'bar: median; click a dot to show its run'));
+    drawing.append(svg('text', {x: kWidth - kRight, y: bottom + 31, class: 'tick', 'text-anchor': 'end'},
+                       'bar: median; a click on a dot shows its run'));
     this.plot.replaceChildren(drawing);
   }
 }
