@@ -1,13 +1,15 @@
-// A report in a real browser: node browser_test.mjs BROWSER PAGE FOLDER TITLE
-// PAGE: a report of two estimators. TITLE: what its heading must read. FOLDER: where pictures go, for
-// looking at. Prints one line a check; status 1 where one does not hold.
+// A report in a real browser: node browser_test.mjs BROWSER PAGE FOLDER ERROR
+// PAGE: the report of a study of both estimators and two seeds, whose question is $DUET_QUESTION.
+// FOLDER: where pictures go, for looking at. ERROR: of the first run's last position, m. Prints one
+// line a check; status 1 where one does not hold.
 
 import {writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {pathToFileURL} from 'node:url';
 import {Browser} from './devtools.mjs';
 
-const [program, page, folder, title] = process.argv.slice(2);
+const [program, page, folder, lastError] = process.argv.slice(2);
+const question = process.env.DUET_QUESTION;
 let failures = 0;
 
 function check(holds, what, found = '') {
@@ -55,12 +57,15 @@ const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 
 async function loads(browser) {
   check(await browser.value('document.documentElement.dataset.ready') === 'true', 'the page gets ready');
-  check(await browser.value('document.querySelector("h1").textContent') === title, 'text is shown as it is',
-        await browser.value('document.querySelector("h1").textContent'));
+  const shown = await browser.value('document.querySelector(".question").textContent');
+  check(shown === question, 'text is shown as it is', shown);
   check(same(browser.requests, [pathToFileURL(page).href]), 'nothing else is asked for', browser.requests);
   check(await browser.value(rowsShown) === 2, 'one run of each estimator is shown first');
   check(await browser.value('document.querySelectorAll(".uplot").length') === 7,
         'three position errors, three orientation errors and the NEES are plotted');
+  // From the record through thinning, float32, base64 and the script: three digits are shown.
+  const error = await browser.value('Number(document.querySelectorAll(".readout tbody td")[1].textContent)');
+  check(Math.abs(error - lastError) < 0.006 * lastError, 'the last position error is the record\'s', [error, lastError]);
 }
 
 async function scrubs(browser) {
@@ -106,11 +111,28 @@ async function chooses(browser) {
   await browser.press(' ');
   check(await browser.value(rowsShown) === 2, 'and brings it back');
   check(await picture(browser, '.plot-grid .plot') === before, 'as it was');
-  await browser.value(`[...document.querySelectorAll('.choice button')].find((b) => b.textContent === 'none').click()`);
+  const press = (text) => browser.value(
+      `[...document.querySelectorAll('.choice .bar button')].find((b) => b.textContent === '${text}').click()`);
+  await press('none');
   check(await browser.value(rowsShown) === 0, 'no run at all can be shown');
-  await browser.value(`document.querySelectorAll('.runs input').forEach((box) => box.click())`);
-  check(await browser.value(rowsShown) === await browser.value('document.querySelectorAll(".runs input").length'),
-        'and all again');
+  await browser.value('document.querySelectorAll(".runs input").forEach((box) => box.click())');
+  check(await browser.value(rowsShown) === 4, 'and all again');
+  await browser.value('document.querySelectorAll(".runs input").forEach((box, i) => i % 2 && box.click())');
+  const names = '[...document.querySelectorAll(".readout tbody th")].map((cell) => cell.textContent).join("; ")';
+  const seeds = await browser.value(names);
+  await press('next seed');
+  const next = await browser.value(names);
+  check(next !== seeds && next.split('; ').length === 2, 'the next seed of the same runs is shown', [seeds, next]);
+  await press('previous seed');
+  check(await browser.value(names) === seeds, 'and the previous one again');
+  await browser.value(`(() => {
+    const select = document.querySelector('.choice select');
+    select.value = 'window';
+    select.dispatchEvent(new Event('change'));
+  })()`);
+  check(await browser.value('document.querySelectorAll(".runs tbody tr").length') === 2, 'runs are filtered');
+  const dots = await browser.value('document.querySelectorAll(".spread .dot").length');
+  check(dots === 4, 'every run is a dot of the spread', dots);
 }
 
 async function turns(browser) {

@@ -6,13 +6,15 @@ export class Scrubber {
   constructor(host, store) {
     this.store = store;
     this.speed = 2;
+    this.steps = 1;
     this.slider = element('input', {
       type: 'range',
       class: 'scrubber',
       'aria-label': 'Time after the start',
       oninput: () => {
         this.stop();
-        store.setTime(Number(this.slider.value));
+        const share = Number(this.slider.value) / this.steps;
+        store.setTime(store.earliest + share * (store.duration - store.earliest));
       },
     });
     this.output = element('output', {class: 'time'});
@@ -24,17 +26,18 @@ export class Scrubber {
     store.on('time', () => this.show());
   }
 
+  /** A step is a state, or as many as make 600 steps: both ends are reached exactly. */
   adjust() {
-    const {earliest, duration} = this.store;
-    this.slider.min = earliest;
-    this.slider.max = duration;
-    this.slider.step = Math.max(0.01, +((duration - earliest) / 600).toPrecision(1));
+    const states = Math.max(1, ...this.store.chosen.map(({run}) => run.instants - 1));
+    this.steps = Math.min(600, states);
+    this.slider.min = 0;
+    this.slider.max = this.steps;
     this.show();
   }
 
   show() {
-    const {time} = this.store;
-    this.slider.value = time;
+    const {time, earliest, duration} = this.store;
+    this.slider.value = Math.round(((time - earliest) / (duration - earliest || 1)) * this.steps);
     this.slider.setAttribute('aria-valuetext', `${time.toFixed(2)} seconds`);
     this.output.textContent = `${time.toFixed(2)} s`;
   }
