@@ -35,12 +35,25 @@ std::vector<fs::path> EntriesOf(const fs::path& folder) {
   return entries;
 }
 
+// The first line of a figure's data says what it shows; without it the file's name has to do.
+std::string TitleOfFigure(const fs::path& drawing) {
+  fs::path data = drawing;
+  data.replace_extension(".csv");
+  if (fs::exists(data)) {
+    const std::string text = ReadTextFile(data);
+    const std::string line = text.substr(0, text.find('\n'));
+    if (line.starts_with("# ") && line.size() > 2) return line.substr(2);
+  }
+  return drawing.stem().string();
+}
+
 std::vector<ReportFigure> ReadFigures(const fs::path& folder) {
   std::vector<ReportFigure> figures;
   if (!fs::is_directory(folder)) return figures;
   for (const fs::path& file : EntriesOf(folder)) {
     if (file.extension() == ".svg") {
-      figures.push_back({file.stem().string(), "image/svg+xml", ReadTextFile(file)});
+      figures.push_back(
+          {file.stem().string(), TitleOfFigure(file), "image/svg+xml", ReadTextFile(file)});
     }
   }
   return figures;

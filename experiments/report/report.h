@@ -22,7 +22,8 @@ struct ReportRun {
 };
 
 struct ReportFigure {
-  std::string name;  ///< of its file, without the ending
+  std::string name;   ///< of its file, without the ending
+  std::string title;  ///< what it shows
   std::string media_type;
   std::string bytes;
 };

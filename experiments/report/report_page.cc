@@ -91,9 +91,10 @@ std::string Figures(const Report& report) {
   if (report.figures.empty()) return "";
   std::string html = SectionStart("figures", "Figures") + "<div class=\"figures\">\n";
   for (const ReportFigure& figure : report.figures) {
-    html += "<figure>\n<img alt=\"" + EscapeHtml(figure.name) +
-            "\" src=\"data:" + EscapeHtml(figure.media_type) + ";base64," + Base64(figure.bytes) +
-            "\">\n" + Element("figcaption", figure.name) + "</figure>\n";
+    html += "<figure id=\"figure-" + EscapeHtml(figure.name) + "\">\n<img alt=\"" +
+            EscapeHtml(figure.name) + "\" src=\"data:" + EscapeHtml(figure.media_type) +
+            ";base64," + Base64(figure.bytes) + "\">\n" + Element("figcaption", figure.title) +
+            "</figure>\n";
   }
   return html + "</div>\n</section>\n";
 }

@@ -62,7 +62,7 @@ Report ReportOf(int runs, const std::string& text) {
   report.summary = report.foot = {text};
   report.tables = {SmallTable(text)};
   report.texts = {{text, text}};
-  report.figures = {{text, "image/svg+xml", "<svg>" + std::string(60'000, 'x') + "</svg>"}};
+  report.figures = {{text, text, "image/svg+xml", "<svg>" + std::string(60'000, 'x') + "</svg>"}};
   for (int i = 0; i < runs; ++i) {
     ReportRun& run = report.runs.emplace_back();
     run.run.id = run.run.stream = run.run.stream_id = run.run.reason = text;

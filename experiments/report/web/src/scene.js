@@ -142,7 +142,7 @@ export class Trajectories {
     for (const y of ticks(low[1], high[1])) this.label(name(y), high[0] + 0.35 * step, y, floor);
     for (const z of ticks(floor, top)) this.label(name(z), low[0], high[1] + 0.25 * step, z);
     this.label('x [m]', (low[0] + high[0]) / 2, low[1] - 1.0 * step, floor, 'axis-name');
-    this.label('y [m]', high[0] + 1.0 * step, (low[1] + high[1]) / 2, floor, 'axis-name');
+    this.label('y [m]', high[0] + 1.25 * step, (low[1] + high[1]) / 2, floor, 'axis-name');
     this.label('z [m]', low[0], high[1] + 0.25 * step, top + 0.5 * step, 'axis-name');
   }
 
@@ -165,7 +165,7 @@ export class Trajectories {
     const curves = curvesOf(run, this.store.alignment);
     const color = slotColor(slot);
     const whole = this.line(curves.estimate, color, 1.4, slot.dash, 0.3);
-    const trail = this.line(curves.estimate, color, 3, slot.dash, 1);
+    const trail = this.line(curves.estimate, color, 2.6, slot.dash, 1);
     const marker = new Mesh(this.sphere, new MeshBasicMaterial({color: new Color(color)}));
     marker.scale.setScalar(this.bounds.radius * 0.012);
     const truth = new Mesh(this.sphere, new MeshBasicMaterial({color: new Color(pageColor('--text'))}));
