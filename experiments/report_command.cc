@@ -1,11 +1,9 @@
 #include <gflags/gflags_declare.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
 
 #include "common/support/input_error.h"
-#include "common/support/text_file.h"
 #include "experiments/commands.h"
 #include "experiments/common_flags.h"
 #include "experiments/exit_status.h"
@@ -15,24 +13,6 @@ namespace duet {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Complete or not at all; a file of that name is replaced.
-void WritePage(const fs::path& file, const std::string& page) {
-  const fs::path partial = file.string() + ".partial-" + std::to_string(getpid());
-  std::error_code error;
-  try {
-    WriteTextFile(partial, page);
-  } catch (const OutputError&) {
-    fs::remove(partial, error);
-    throw;
-  }
-  fs::rename(partial, file, error);
-  if (error) {
-    std::error_code ignored;
-    fs::remove(partial, ignored);
-    throw OutputError(file.string(), "cannot be written: " + error.message());
-  }
-}
 
 int RunReport(const CommandLine& line) {
   if (line.operands().size() != 1) {
@@ -44,9 +24,8 @@ int RunReport(const CommandLine& line) {
     throw InputError(FLAGS_out, 0, "", "exists; --out expects a file that does not exist yet");
   }
   const fs::path file = FLAGS_out.empty() ? folder / "report.html" : fs::path(FLAGS_out);
-  const std::string page = ReportPage(ReadReport(folder));
-  WritePage(file, page);
-  std::printf("%s: %.1f MB\n", file.c_str(), static_cast<double>(page.size()) / 1e6);
+  const std::size_t size = WriteReport(folder, file);
+  std::printf("%s: %.1f MB\n", file.c_str(), static_cast<double>(size) / 1e6);
   return kDone;
 }
 

@@ -145,4 +145,10 @@ Report ReadReport(const fs::path& given) {
   return report;
 }
 
+std::size_t WriteReport(const fs::path& folder, const fs::path& file) {
+  const std::string page = ReportPage(ReadReport(folder));
+  ReplaceTextFile(file, page);
+  return page.size();
+}
+
 }  // namespace duet

@@ -65,4 +65,8 @@ inline constexpr std::size_t kMostReportBytes = 4'800'000;
 /// bytes.
 [[nodiscard]] std::string ReportPage(const Report& report);
 
+/// Both: writes the page of a folder, complete or not at all, and gives its bytes; a file of that
+/// name is replaced. Throws InputError and OutputError.
+std::size_t WriteReport(const std::filesystem::path& folder, const std::filesystem::path& file);
+
 }  // namespace duet

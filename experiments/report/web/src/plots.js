@@ -155,6 +155,7 @@ export class Plots {
       return;
     }
     const line = element('div', {class: 'scrub-line'});
+    const peek = element('div', {class: 'scrub-line peek', hidden: true});
     const text = pageColor('--text');
     const axis = {
       stroke: text,
@@ -197,14 +198,14 @@ export class Plots {
         setCursor: [(plot) => this.peek(plot)],
         setScale: [(plot, scale) => this.zoomAll(plot, scale)],
         ready: [(plot) => {
-          plot.over.append(line);
+          plot.over.append(line, peek);
           plot.over.addEventListener('mouseleave', () => this.store.setPeek(null));
           this.setTimeOnClick(plot);
           this.placeScrubber();  // uPlot has its scales only now
         }],
       },
     };
-    entry.line = line;
+    entry.lines = [line, peek];
     entry.last = last;
     entry.plot = new uPlot(options, data, target);
     entry.plot.root.setAttribute('role', 'img');
@@ -291,12 +292,16 @@ export class Plots {
     return this.setRange([start, start + width]);
   }
 
+  /** The scrubber's line, and a second one for what is under the pointer in the trajectories. */
   placeScrubber() {
-    for (const {plot, line} of this.plots) {
-      if (!line) continue;
-      const left = plot.valToPos(this.store.time, 'x');
-      line.hidden = !(left > -1 && left < plot.over.clientWidth + 1);
-      line.style.transform = `translateX(${Math.round(left)}px)`;
+    const inPlots = this.host.matches(':hover');  // uPlot has its own line there
+    const times = [this.store.time, inPlots ? null : this.store.peek];
+    for (const {plot, lines} of this.plots) {
+      lines?.forEach((line, i) => {
+        const left = times[i] === null ? NaN : plot.valToPos(times[i], 'x');
+        line.hidden = !(left > -1 && left < plot.over.clientWidth + 1);
+        if (!line.hidden) line.style.transform = `translateX(${Math.round(left)}px)`;
+      });
     }
   }
 
