@@ -19,5 +19,6 @@ namespace duet {
 [[nodiscard]] Command ObservabilityCommand();
 [[nodiscard]] Command ReportCommand();
 [[nodiscard]] Command StudyCommand();
+[[nodiscard]] Command VerifyCommand();
 
 }  // namespace duet

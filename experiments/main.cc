@@ -19,8 +19,8 @@ int Run(int argc, char** argv) {
   try {
     return Dispatch({CompareCommand(), TrackCommand(), RunCommand(), EvaluateCommand(),
                      CheckCommand(), ObservabilityCommand(), AblateCommand(), StudyCommand(),
-                     ReportCommand(), SimulateCommand(), MonteCarloCommand(), TrackErrorCommand(),
-                     AllanCommand(), ConfigCommand()},
+                     VerifyCommand(), ReportCommand(), SimulateCommand(), MonteCarloCommand(),
+                     TrackErrorCommand(), AllanCommand(), ConfigCommand()},
                     argc, argv);
   } catch (const InputError& error) {
     return Fail(kBadInput, error.what());

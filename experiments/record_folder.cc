@@ -32,8 +32,8 @@ void RequireAbsent(const std::string& out) {
 }
 
 RecordFolder::RecordFolder(const std::string& out, const std::string& command_line,
-                           const LogCapture& log)
-    : log_(log), manifest_(StartManifest(command_line)), folder_(out) {}
+                           const LogCapture& log, OutputFolder::Makers makers)
+    : log_(log), manifest_(StartManifest(command_line)), folder_(out, makers) {}
 
 void RecordFolder::Commit(const ConfigSources& sources) {
   WriteRest(sources);

@@ -20,7 +20,8 @@ void RequireAbsent(const std::string& out);
 /// log.txt) is written by Commit().
 class RecordFolder {
  public:
-  RecordFolder(const std::string& out, const std::string& command_line, const LogCapture& log);
+  RecordFolder(const std::string& out, const std::string& command_line, const LogCapture& log,
+               OutputFolder::Makers makers = OutputFolder::Makers::kOne);
 
   /// Where files go until Commit().
   [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }

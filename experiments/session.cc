@@ -28,7 +28,7 @@ void CheckBounds(const RigCalibration& told, const SharedOptions& shared) {
 
 EstimatorSetup Session::SetupWith(const SharedOptions& shared) const {
   EstimatorSetup setup{.rig = ToldRig(recording.rig, shared.calibration),
-                       .imu_noise = recording.imu_sensor.noise,
+                       .imu_noise = shared.imu_noise_factors.Times(recording.imu_sensor.noise),
                        .g_G = recording.g_G(),
                        .shared = shared};
   CheckBounds(setup.rig, shared);

@@ -47,11 +47,11 @@ void RefuseExisting(const fs::path& target) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(const fs::path& target) : target_(target) {
+OutputFolder::OutputFolder(const fs::path& target, Makers makers) : target_(target) {
   // "out/" and "out" are the same folder; the sibling's name needs the latter.
   if (!target_.has_filename()) target_ = target_.parent_path();
   if (target_.empty()) throw OutputError("output folder", "has an empty name");
-  RefuseExisting(target_);
+  if (makers == Makers::kOne) RefuseExisting(target_);
   std::error_code error;
   if (target_.has_parent_path()) {
     fs::create_directories(target_.parent_path(), error);

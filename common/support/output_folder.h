@@ -9,9 +9,14 @@ namespace duet {
 /// the destructor removes it.
 class OutputFolder {
  public:
+  enum class Makers {
+    kOne,
+    kSeveral,  ///< others may be making the same target, on other machines too: CommitUnlessThere
+  };
+
   /// Makes the temporary folder, and the target's parents where they are missing. Throws
-  /// OutputError where the target exists or cannot be made.
-  explicit OutputFolder(const std::filesystem::path& target);
+  /// OutputError where the target cannot be made or, with one maker, exists.
+  explicit OutputFolder(const std::filesystem::path& target, Makers makers = Makers::kOne);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -24,8 +29,8 @@ class OutputFolder {
   /// meanwhile.
   void Commit();
 
-  /// The same for a target that others may be making too, on other machines of a shared folder as
-  /// well: false where one of them was first; its folder stays, this one is removed.
+  /// The same with several makers: false where another one was first; its folder stays, this one is
+  /// removed.
   [[nodiscard]] bool CommitUnlessThere();
 
  private:

@@ -9,6 +9,7 @@
 #include "experiments/manifest_reader.h"
 #include "experiments/report/record_reports.h"
 #include "experiments/report/report.h"
+#include "experiments/study/study_records.h"
 
 namespace duet {
 namespace fs = std::filesystem;
@@ -130,7 +131,7 @@ std::size_t InstantsThatFit(const Report& report) {
 Report ReadReport(const fs::path& given) {
   const fs::path folder = fs::weakly_canonical(given);
   Report report;
-  if (fs::exists(folder / "plan.csv")) {
+  if (IsStudyFolder(folder)) {
     report = DescribeStudy(folder);
   } else if (fs::exists(folder / "comparison.json")) {
     report = DescribeComparison(folder);

@@ -11,7 +11,6 @@
 #include "evaluation/text_table.h"
 #include "experiments/manifest_reader.h"
 #include "experiments/record_reader.h"
-#include "experiments/study/study_file.h"
 #include "experiments/study/study_records.h"
 
 namespace duet {
@@ -144,13 +143,12 @@ bool IsRunRecord(const fs::path& folder) {
 
 Report DescribeStudy(const fs::path& folder) {
   const StudyFolder study = ReadStudyFolder(folder);
-  const StudyFile file = ReadStudyFile(folder / "study.yaml", /*quick=*/false);
   Report report;
   report.kind = "study";
   report.title = study.result.name;
   report.question = study.result.question;
   report.foot = study.result.foot;
-  report.tables = MakeStudyTables(study.result, TableOptionsOf(file));
+  report.tables = MakeStudyTables(study.result, TableOptionsOf(study.study));
   report.summary.push_back(GridSentence(study.result));
   for (const StudyTable& table : report.tables) {
     const auto said = std::find(report.summary.begin(), report.summary.end(), table.verdict);

@@ -106,7 +106,10 @@ Matrix15d StartCovariance(const InitializationOptions& start, double scale) {
 InitialCondition DrawStart(const InertialState& truth, const InitializationOptions& start,
                            double scale, std::uint64_t seed) {
   Random random(seed, kStartStream);
-  return DrawInitialCondition(truth, StartCovariance(start, scale), &random);
+  InitialCondition drawn =
+      DrawInitialCondition(truth, StartCovariance(start, scale * start.drawn_error_scale), &random);
+  drawn.covariance = StartCovariance(start, scale);
+  return drawn;
 }
 
 MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,

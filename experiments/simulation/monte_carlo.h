@@ -88,7 +88,7 @@ struct MonteCarloResult {
 [[nodiscard]] Matrix15d StartCovariance(const InitializationOptions& start, double scale);
 
 /// The start of a run: the truth, off by an error that is drawn from StartCovariance(start, scale)
-/// by a random sequence of its own.
+/// by a random sequence of its own, times start.drawn_error_scale.
 [[nodiscard]] InitialCondition DrawStart(const InertialState& truth,
                                          const InitializationOptions& start, double scale,
                                          std::uint64_t seed);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <csignal>
 #include <functional>
 #include <map>
 #include <optional>
@@ -13,7 +14,7 @@ namespace duet {
 /// it, and none outlives this process.
 class ChildPool {
  public:
-  ChildPool() = default;
+  ChildPool();
   ChildPool(const ChildPool&) = delete;
   ChildPool& operator=(const ChildPool&) = delete;
   /// Ends and waits for what is still running.
@@ -37,6 +38,7 @@ class ChildPool {
   void PassOnInterruption();
 
   std::map<int, int> numbers_;  // by process id
+  sigset_t mask_before_{};
   bool passed_on_ = false;
 };
 

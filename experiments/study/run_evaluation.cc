@@ -283,6 +283,23 @@ class RecordEvaluator {
   RunEvaluation result_;
 };
 
+std::string EvaluationJson(const RunEvaluation& evaluation) {
+  nlohmann::ordered_json json;
+  json["failed"] = evaluation.failed;
+  json["reason"] = evaluation.reason;
+  json["metrics"] = nlohmann::ordered_json::object();
+  for (const auto& [key, value] : evaluation.metrics) json["metrics"][key] = value;
+  json["left_out"] = nlohmann::ordered_json::object();
+  for (const auto& [key, why] : evaluation.left_out) json["left_out"][key] = why;
+  return json.dump(2) + "\n";
+}
+
+std::string CalibrationTruthCsv(const NamedNumbers& truth) {
+  std::string text = "name,true\n";
+  for (const auto& [name, value] : truth) text += name + "," + FormatNumber(value) + "\n";
+  return text;
+}
+
 }  // namespace
 
 RunEvaluation EvaluateRecord(const fs::path& record, const Recording& recording, bool simulated) {
@@ -305,32 +322,20 @@ NamedNumbers CostOfRecord(const fs::path& record) {
   return cost;
 }
 
-std::string EvaluationJson(const RunEvaluation& evaluation) {
-  nlohmann::ordered_json json;
-  json["failed"] = evaluation.failed;
-  json["reason"] = evaluation.reason;
-  json["metrics"] = nlohmann::ordered_json::object();
-  for (const auto& [key, value] : evaluation.metrics) json["metrics"][key] = value;
-  json["left_out"] = nlohmann::ordered_json::object();
-  for (const auto& [key, why] : evaluation.left_out) json["left_out"][key] = why;
-  return json.dump(2) + "\n";
-}
-
-std::string CalibrationTruthCsv(const NamedNumbers& truth) {
-  std::string text = "name,true\n";
-  for (const auto& [name, value] : truth) text += name + "," + FormatNumber(value) + "\n";
-  return text;
+std::vector<std::pair<std::string, std::string>> EvaluationTexts(const RunEvaluation& evaluation) {
+  std::vector<std::pair<std::string, std::string>> texts = {
+      {"evaluation.json", EvaluationJson(evaluation)}};
+  if (!evaluation.truth.poses.empty()) {
+    texts.emplace_back("truth.csv", WriteGroundTruthTable(evaluation.truth));
+  }
+  if (!evaluation.calibration_truth.empty()) {
+    texts.emplace_back("calibration_truth.csv", CalibrationTruthCsv(evaluation.calibration_truth));
+  }
+  return texts;
 }
 
 void WriteRunEvaluation(const RunEvaluation& evaluation, const fs::path& record) {
-  WriteTextFile(record / "evaluation.json", EvaluationJson(evaluation));
-  if (!evaluation.truth.poses.empty()) {
-    WriteTextFile(record / "truth.csv", WriteGroundTruthTable(evaluation.truth));
-  }
-  if (!evaluation.calibration_truth.empty()) {
-    WriteTextFile(record / "calibration_truth.csv",
-                  CalibrationTruthCsv(evaluation.calibration_truth));
-  }
+  for (const auto& [name, text] : EvaluationTexts(evaluation)) WriteTextFile(record / name, text);
 }
 
 RunEvaluation ReadEvaluation(const fs::path& record) {

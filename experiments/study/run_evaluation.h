@@ -36,9 +36,9 @@ struct RunEvaluation {
 /// Time a frame and memory, from timing.csv and manifest.json of a record.
 [[nodiscard]] NamedNumbers CostOfRecord(const std::filesystem::path& record);
 
-/// The files of a record that are made of it (docs/formats.md), as texts.
-[[nodiscard]] std::string EvaluationJson(const RunEvaluation& evaluation);
-[[nodiscard]] std::string CalibrationTruthCsv(const NamedNumbers& truth);
+/// The files of a record that are made of it (docs/formats.md): names and texts.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> EvaluationTexts(
+    const RunEvaluation& evaluation);
 /// Throws OutputError.
 void WriteRunEvaluation(const RunEvaluation& evaluation, const std::filesystem::path& record);
 

@@ -118,12 +118,13 @@ void AppendKeys(const YamlNode& node, const std::string& prefix, const std::stri
 }
 
 std::vector<StudyKey> ReadSet(const StrictMap& map, const std::string& file,
-                              const std::vector<std::string>& sections) {
+                              const std::vector<std::string>& sections,
+                              const std::string& name = "set") {
   std::vector<StudyKey> keys;
-  const YamlNode* node = map.Find("set");
+  const YamlNode* node = map.Find(name);
   if (node == nullptr) return keys;
   if (node->kind != YamlNode::Kind::kMap) {
-    map.Fail("set", "expected keys with values, got " + Describe(*node));
+    map.Fail(name, "expected keys with values, got " + Describe(*node));
   }
   AppendKeys(*node, "", file, &keys);
   for (const StudyKey& key : keys) {
@@ -131,7 +132,7 @@ std::vector<StudyKey> ReadSet(const StrictMap& map, const std::string& file,
     if (std::find(sections.begin(), sections.end(), section) != sections.end()) continue;
     std::string expected;
     for (const std::string& each : sections) expected += (expected.empty() ? "" : ", ") + each;
-    throw InputError(file, key.value.line, map.KeyOf("set") + "." + key.key,
+    throw InputError(file, key.value.line, map.KeyOf(name) + "." + key.key,
                      "has no place here; expected keys of " + expected);
   }
   return keys;
@@ -208,8 +209,16 @@ StudyStream ReadStream(const YamlNode& node, const std::string& file, const std:
 }
 
 StudyChange ReadChange(const YamlNode& node, const std::string& file, const std::string& path) {
-  StrictMap map(node, file, path, {"name", "set"});
-  return {CheckedName(&map, "name"), ReadSet(map, file, RunSections())};
+  StrictMap map(node, file, path, {"name", "set", "only"});
+  StudyChange change{.name = CheckedName(&map, "name"), .set = ReadSet(map, file, RunSections())};
+  if (const YamlNode* only = map.Find("only")) {
+    const StrictMap estimators(*only, file, map.KeyOf("only"), EstimatorNames());
+    for (const std::string& estimator : EstimatorNames()) {
+      std::vector<StudyKey> keys = ReadSet(estimators, file, RunSections(), estimator);
+      if (!keys.empty()) change.only[estimator] = std::move(keys);
+    }
+  }
+  return change;
 }
 
 template <class Item, class Read>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -42,6 +43,8 @@ struct StudyStream {
 struct StudyChange {
   std::string name;
   std::vector<StudyKey> set;
+  /// Over `set`, for one estimator alone: what tuning each for itself has found.
+  std::map<std::string, std::vector<StudyKey>> only = {};
 };
 
 /// What the tables of a study test: pairs of estimators, of settings, or of perturbations.

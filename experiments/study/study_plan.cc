@@ -24,6 +24,12 @@ void AddKeys(const std::vector<StudyKey>& keys, ConfigSources* sources) {
   for (const StudyKey& key : keys) sources->AddKey(key.key, key.value, key.file);
 }
 
+void AddChange(const StudyChange& change, const std::string& estimator, ConfigSources* sources) {
+  AddKeys(change.set, sources);
+  const auto only = change.only.find(estimator);
+  if (only != change.only.end()) AddKeys(only->second, sources);
+}
+
 bool IsOfFrontend(const StudyKey& key) { return key.key.starts_with("frontend."); }
 
 /// What `told` names a file or folder beside the study's file is found there.
@@ -171,14 +177,14 @@ class Planner {
     cell.setting = setting;
     cell.perturbation = perturbation;
     cell.draw_seed = 1;
-    ConfigSources sources = SourcesOfRun(plan_, cell);
-    Configuration configuration;
-    configuration.Read(&sources);
-    const int seeds = SeedsOf(stream, configuration.shared.calibration);
     for (const std::string& estimator : study().estimators) {
+      cell.estimator = estimator;
+      ConfigSources sources = SourcesOfRun(plan_, cell);
+      Configuration configuration;
+      configuration.Read(&sources);
+      const int seeds = SeedsOf(stream, configuration.shared.calibration);
       const std::string settings = RunSettingsSha256(sources.values(), estimator);
       for (int k = 0; k < seeds; ++k) {
-        cell.estimator = estimator;
         cell.seed = study().seeds.first + k;
         AddCell(cell, k, settings);
       }
@@ -318,8 +324,9 @@ ConfigSources SourcesOfRun(const StudyPlan& plan, const PlannedRun& run) {
   for (const StudyKey& key : study.set) {
     if (!IsOfFrontend(key)) sources.AddKey(key.key, key.value, key.file);
   }
-  AddKeys(study.settings[static_cast<std::size_t>(run.setting)].set, &sources);
-  AddKeys(study.perturbations[static_cast<std::size_t>(run.perturbation)].set, &sources);
+  AddChange(study.settings[static_cast<std::size_t>(run.setting)], run.estimator, &sources);
+  AddChange(study.perturbations[static_cast<std::size_t>(run.perturbation)], run.estimator,
+            &sources);
   sources.AddText(
       "shared:\n  calibration:\n    told_errors_seed: " + std::to_string(run.draw_seed) + "\n",
       "seed of the run");

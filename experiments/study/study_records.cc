@@ -26,26 +26,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPlanHeader = "#id,stream_id,stream,estimator,setting,perturbation,seed\n";
 
-std::vector<StudyRun> ReadPlanCsv(const fs::path& file) {
-  const std::string text = ReadTextFile(file);
-  CsvReader reader(text, file.string(),
-                   {{"id", "stream_id", "stream", "estimator", "setting", "perturbation", "seed"}});
-  std::vector<StudyRun> runs;
-  while (reader.Next()) {
-    StudyRun& run = runs.emplace_back();
-    run.id = reader.Text(0);
-    run.stream_id = reader.Text(1);
-    run.stream = reader.Text(2);
-    run.estimator = reader.Text(3);
-    run.setting = reader.Text(4);
-    run.perturbation = reader.Text(5);
-    run.seed = static_cast<int>(reader.Unsigned(6));
-  }
-  return runs;
-}
-
-/// Fills a run in from its record; false where there is none.
-bool ReadRecordOf(const fs::path& folder, StudyRun* run) {
+/// Fills a run in from its record, which must be of the records' version; false where there is
+/// none.
+bool ReadRecordOf(const fs::path& folder, std::optional<RecordVersion>* version, StudyRun* run) {
   const fs::path record = RecordFolderOf(folder, run->id);
   if (!fs::exists(record)) {
     run->failed = true;
@@ -60,15 +43,17 @@ bool ReadRecordOf(const fs::path& folder, StudyRun* run) {
   run->reason = evaluation.reason;
   run->metrics = evaluation.metrics;
   for (auto& cost : CostOfRecord(record)) run->metrics.push_back(std::move(cost));
-  const fs::path manifest = record / "manifest.json";
-  run->tracks_sha256 =
-      ManifestReader(ReadTextFile(manifest), manifest.string()).Text("tracks_sha256");
+  const fs::path file = record / "manifest.json";
+  const ManifestReader manifest(ReadTextFile(file), file.string());
+  run->tracks_sha256 = manifest.Text("tracks_sha256");
+  const RecordVersion own{manifest.Text("version"), manifest.Text("commit")};
+  if (!*version) *version = own;
+  if (!(own == **version)) {
+    throw InputError(record.string(), 0, "",
+                     "was made by " + own.Text() + ", others by " + (*version)->Text() +
+                         "; results of two are not mixed");
+  }
   return true;
-}
-
-std::string TextOf(const YamlNode& root, const char* key) {
-  const YamlNode* node = root.Find(key);
-  return node == nullptr ? "" : node->scalar;
 }
 
 std::string Count(std::size_t count, const std::string& what) {
@@ -137,19 +122,42 @@ fs::path FailureFile(const fs::path& folder, const std::string& id) {
   return folder / "failures" / id;
 }
 
+std::vector<StudyRun> ReadPlan(const fs::path& folder) {
+  const fs::path file = folder / "plan.csv";
+  const std::string text = ReadTextFile(file);
+  CsvReader reader(text, file.string(),
+                   {{"id", "stream_id", "stream", "estimator", "setting", "perturbation", "seed"}});
+  std::vector<StudyRun> runs;
+  while (reader.Next()) {
+    StudyRun& run = runs.emplace_back();
+    run.id = reader.Text(0);
+    run.stream_id = reader.Text(1);
+    run.stream = reader.Text(2);
+    run.estimator = reader.Text(3);
+    run.setting = reader.Text(4);
+    run.perturbation = reader.Text(5);
+    run.seed = static_cast<int>(reader.Unsigned(6));
+  }
+  return runs;
+}
+
+bool IsStudyFolder(const fs::path& folder) {
+  return fs::exists(folder / "plan.csv") && fs::exists(folder / "study.yaml");
+}
+
 StudyFolder ReadStudyFolder(const fs::path& folder) {
-  if (!fs::exists(folder / "plan.csv")) {
+  if (!IsStudyFolder(folder)) {
     throw InputError(folder.string(), 0, "", "has no plan.csv; expected the folder of duet study");
   }
   StudyFolder study;
   study.path = folder;
-  const fs::path file = folder / "study.yaml";
-  const YamlNode root = ParseYaml(ReadTextFile(file), file.string());
-  study.result.name = TextOf(root, "study");
-  study.result.question = TextOf(root, "question");
-  study.result.runs = ReadPlanCsv(folder / "plan.csv");
+  study.study = ReadStudyFile(folder / "study.yaml", /*quick=*/false);
+  study.result.name = study.study.name;
+  study.result.question = study.study.question;
+  study.result.runs = ReadPlan(folder);
+  std::optional<RecordVersion> version;
   for (StudyRun& run : study.result.runs) {
-    const bool there = ReadRecordOf(folder, &run);
+    const bool there = ReadRecordOf(folder, &version, &run);
     study.record_of_run.push_back(there ? RecordFolderOf(folder, run.id) : fs::path());
   }
   AddFoot(study, &study.result.foot);

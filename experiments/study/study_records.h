@@ -10,10 +10,14 @@
 
 namespace duet {
 
+/// True where a folder is one of duet study.
+[[nodiscard]] bool IsStudyFolder(const std::filesystem::path& folder);
+
 /// A study's folder as its records tell: the grid of plan.csv, each cell with what its record
 /// holds. A cell without a record has failed, with what is known of its end as the reason.
 struct StudyFolder {
   std::filesystem::path path;
+  StudyFile study;  ///< of study.yaml: metrics, figures, what is compared with what
   StudyResult result;
   std::vector<std::filesystem::path> record_of_run;  ///< of result.runs; empty: there is none
 };
@@ -21,6 +25,9 @@ struct StudyFolder {
 /// than the others.
 [[nodiscard]] StudyFolder ReadStudyFolder(const std::filesystem::path& folder);
 [[nodiscard]] StudyResult ReadStudy(const std::filesystem::path& folder);
+
+/// The cells of plan.csv, without what came of them.
+[[nodiscard]] std::vector<StudyRun> ReadPlan(const std::filesystem::path& folder);
 
 /// plan.csv: one row a cell, `id,stream_id,stream,estimator,setting,perturbation,seed`.
 [[nodiscard]] std::string PlanCsv(const StudyPlan& plan);

@@ -65,8 +65,8 @@ std::string StudyJson(const StudyPlan& plan, const PlannedRun& run, const fs::pa
 
 const std::vector<std::string>& CanonicalFiles() {
   static const std::vector<std::string> names = {
-      "config.yaml",  "trajectory.tum",  "states.csv", "calibration.csv",      "covariance.csv",
-      "features.csv", "evaluation.json", "truth.csv",  "calibration_truth.csv"};
+      "trajectory.tum", "states.csv",      "calibration.csv", "covariance.csv",
+      "features.csv",   "evaluation.json", "truth.csv",       "calibration_truth.csv"};
   return names;
 }
 
@@ -87,7 +87,7 @@ ExitStatus RunStudyRun(const StudyPlan& plan, const PlannedRun& run, const fs::p
   LogCapture log(/*quiet=*/true);  // what is logged stands in the record
   Session session = OpenStudySession(plan, run, stream_folder);
   MakeFolder(target.parent_path());
-  RecordFolder record(target.string(), command_line, log);
+  RecordFolder record(target.string(), command_line, log, OutputFolder::Makers::kSeveral);
   const EstimatorRunResult result = RunEstimator(
       {.backend = run.estimator, .covariance = true, .quiet = true}, &session, &record);
   if (result.outcome == LoopOutcome::kInterrupted) return kInterrupted;

@@ -215,7 +215,7 @@ int RunStudy(const StudyChoices& choices) {
     return status;
   }
   RemoveLocksOfStreams(choices.out);
-  WriteStudyProducts(plan.study, choices);
+  WriteStudyProducts(choices.out, choices.quick, choices.command_line);
   return execution.died() > 0 ? kInternalError : kDone;
 }
 

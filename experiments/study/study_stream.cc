@@ -103,7 +103,7 @@ std::optional<Recording> MakeRecording(const StudyPlan& plan, const PlannedStrea
 /// Writes the stream; false where the program was interrupted, or another one was first.
 bool MakeStream(const StudyPlan& plan, const PlannedStream& planned, const fs::path& study_folder) {
   const bool simulated = plan.study.streams[static_cast<std::size_t>(planned.stream)].simulated();
-  OutputFolder output(StreamFolder(study_folder, planned.id));
+  OutputFolder output(StreamFolder(study_folder, planned.id), OutputFolder::Makers::kSeveral);
   std::string truth_yaml;
   const std::optional<Recording> recording =
       MakeRecording(plan, planned, study_folder, &truth_yaml);

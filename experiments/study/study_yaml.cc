@@ -37,9 +37,10 @@ std::string FlowYaml(const YamlNode& node) {
   return node.kind == YamlNode::Kind::kMap ? "{" + text + "}" : "[" + text + "]";
 }
 
-std::string SetYaml(const std::vector<StudyKey>& set, const std::string& indent) {
+std::string SetYaml(const std::vector<StudyKey>& set, const std::string& indent,
+                    const std::string& name = "set") {
   if (set.empty()) return "";
-  std::string text = indent + "set:\n";
+  std::string text = indent + name + ":\n";
   for (const StudyKey& key : set) {
     text += indent + "  " + key.key + ": " + FlowYaml(key.value) + "\n";
   }
@@ -84,6 +85,8 @@ std::string ChangesYaml(const std::vector<StudyChange>& changes) {
   std::string text;
   for (const StudyChange& change : changes) {
     text += "  - name: " + QuotedYaml(change.name) + "\n" + SetYaml(change.set, "    ");
+    if (!change.only.empty()) text += "    only:\n";
+    for (const auto& [estimator, keys] : change.only) text += SetYaml(keys, "      ", estimator);
   }
   return text;
 }
