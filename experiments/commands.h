@@ -17,6 +17,7 @@ namespace duet {
 [[nodiscard]] Command AllanCommand();
 [[nodiscard]] Command AblateCommand();
 [[nodiscard]] Command ObservabilityCommand();
+[[nodiscard]] Command ReportCommand();
 [[nodiscard]] Command StudyCommand();
 [[nodiscard]] Command VerifyCommand();
 [[nodiscard]] Command TuneCommand();
