@@ -16,6 +16,37 @@
 
 namespace duet {
 
+/// What the told noise densities are multiplied by: inflation against what the white noise model
+/// leaves out, or a noise that is told wrong on purpose.
+struct ImuNoiseFactors {
+  double gyroscope_density = 1.0;
+  double accelerometer_density = 1.0;
+  double gyroscope_random_walk = 1.0;
+  double accelerometer_random_walk = 1.0;
+
+  [[nodiscard]] ImuNoise Times(const ImuNoise& told) const {
+    return {
+        .gyroscope_density = gyroscope_density * told.gyroscope_density,
+        .accelerometer_density = accelerometer_density * told.accelerometer_density,
+        .gyroscope_random_walk = gyroscope_random_walk * told.gyroscope_random_walk,
+        .accelerometer_random_walk = accelerometer_random_walk * told.accelerometer_random_walk};
+  }
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    const double min = 1e-3;
+    const double max = 1e3;
+    v.Field("gyroscope_density", &gyroscope_density,
+            {.doc = "Of the gyroscope's white noise.", .min = min, .max = max});
+    v.Field("accelerometer_density", &accelerometer_density,
+            {.doc = "Of the accelerometer's white noise.", .min = min, .max = max});
+    v.Field("gyroscope_random_walk", &gyroscope_random_walk,
+            {.doc = "Of the walk of the gyroscope's bias.", .min = min, .max = max});
+    v.Field("accelerometer_random_walk", &accelerometer_random_walk,
+            {.doc = "Of the walk of the accelerometer's bias.", .min = min, .max = max});
+  }
+};
+
 /// What both estimators must agree on (configuration `shared:`). Told values of the sensors come
 /// with the recording (RigCalibration, ImuNoise).
 struct SharedOptions {
@@ -24,6 +55,7 @@ struct SharedOptions {
   double max_abs_t_d_s = 0.05;
   double max_abs_t_r_s = 0.05;
   double max_imu_gap_s = 0.05;
+  ImuNoiseFactors imu_noise_factors;
   CalibrationPriors calibration;
   StandstillOptions standstill;
 
@@ -53,6 +85,8 @@ struct SharedOptions {
              .unit = "s",
              .min = 1e-4,
              .max = 10});
+    v.Group("imu_noise_factors", &imu_noise_factors,
+            "What the recording's told noise densities are multiplied by.");
     v.Group("calibration", &calibration,
             "Which calibration states are estimated, with what prior.");
     v.Group("standstill", &standstill,

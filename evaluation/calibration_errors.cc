@@ -7,6 +7,7 @@
 
 #include "common/support/logging.h"
 #include "evaluation/consistency.h"
+#include "evaluation/holm.h"
 #include "evaluation/statistics.h"
 #include "evaluation/text_table.h"
 

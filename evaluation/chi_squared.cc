@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
-#include <numeric>
 
 #include "common/support/logging.h"
 
@@ -30,20 +29,6 @@ double MeanChiSquaredPValue(double mean, double dof, int count) {
   const double below = boost::math::cdf(distribution, mean * count);
   const double above = boost::math::cdf(boost::math::complement(distribution, mean * count));
   return std::min(1.0, 2.0 * std::min(below, above));
-}
-
-std::vector<bool> HolmRejections(const std::vector<double>& p_values, double alpha) {
-  std::vector<std::size_t> order(p_values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return p_values[a] < p_values[b]; });
-  std::vector<bool> rejected(p_values.size(), false);
-  for (std::size_t rank = 0; rank < order.size(); ++rank) {
-    const auto remaining = static_cast<double>(order.size() - rank);
-    if (!(p_values[order[rank]] <= alpha / remaining)) break;
-    rejected[order[rank]] = true;
-  }
-  return rejected;
 }
 
 }  // namespace duet

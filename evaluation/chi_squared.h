@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 namespace duet {
 
 /// The value that a chi-squared variable with `dof` degrees of freedom stays below with
@@ -21,9 +19,5 @@ struct Band {
 /// The probability of a mean at least as far out, on either side, where the `count` variables
 /// really are chi-squared: 2 min(P(below), P(above)), at most 1.
 [[nodiscard]] double MeanChiSquaredPValue(double mean, double dof, int count);
-
-/// Holm's step-down correction (Holm 1979): which of the hypotheses are rejected so that the
-/// probability of any false rejection is at most `alpha`, whatever the dependence between them.
-[[nodiscard]] std::vector<bool> HolmRejections(const std::vector<double>& p_values, double alpha);
 
 }  // namespace duet

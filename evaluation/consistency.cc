@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/support/logging.h"
+#include "evaluation/holm.h"
 #include "evaluation/statistics.h"
 #include "evaluation/text_table.h"
 

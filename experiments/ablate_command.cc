@@ -222,7 +222,7 @@ int RunAblate(const CommandLine& line) {
   CheckFlags(line);
   RequireAbsent(FLAGS_out);
   LogCapture log(FLAGS_quiet);
-  RecordFolder record(FLAGS_out, line, log);
+  RecordFolder record(FLAGS_out, line.text(), log);
   const bool simulated = FLAGS_dataset.empty();
   Ablation ablation;
   simulated ? RunOnSimulation(line, &ablation) : RunOnRecording(line, &ablation);

@@ -17,5 +17,10 @@ namespace duet {
 [[nodiscard]] Command AllanCommand();
 [[nodiscard]] Command AblateCommand();
 [[nodiscard]] Command ObservabilityCommand();
+[[nodiscard]] Command ReportCommand();
+[[nodiscard]] Command StudyCommand();
+[[nodiscard]] Command VerifyCommand();
+[[nodiscard]] Command TuneCommand();
+[[nodiscard]] Command FigureCommand();
 
 }  // namespace duet

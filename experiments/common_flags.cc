@@ -6,11 +6,14 @@ DEFINE_string(dataset, "", "Recording in ASL form (EuRoC): the folder that holds
 DEFINE_string(out, "", "Folder (duet observability: file) to write; must not exist yet.");
 DEFINE_string(config, "", "Configuration file (YAML); later ones overrule earlier ones.");
 DEFINE_string(set, "", "Sets one key of the configuration, e.g. msckf.window=15; see duet config.");
-DEFINE_string(init, "auto",
-              "Where the first state comes from: the recording's ground truth, or standing still; "
-              "auto: standing still, else a failure that says what was missing. Frames before the "
-              "start have no estimate; a start later than 5 s, or than a fifth of the frames, is a "
-              "warning.");
+DEFINE_string(
+    init, "auto",
+    "Where the first state comes from: the recording's ground truth; drawn: its state at the "
+    "first frame, off by errors drawn from the start covariance (initialization.sigma_*) "
+    "with --seed; or standing still; auto: standing still, else a failure that says what was "
+    "missing. Frames before the "
+    "start have no estimate; a start later than 5 s, or than a fifth of the frames, is a "
+    "warning.");
 DEFINE_string(cameras, "0", "Cameras to use.");
 DEFINE_double(start, 0.0,
               "Begin this long after the recording's first image (duet allan: IMU sample) [s].");
@@ -34,8 +37,8 @@ std::vector<FlagUse> CommonFlags(bool dataset_required) {
       {.name = "config", .value = "FILE", .repeatable = true},
       {.name = "set", .value = "KEY=VALUE", .repeatable = true},
       {.name = "init",
-       .value = "groundtruth|rest|auto",
-       .choices = {"groundtruth", "rest", "auto"}},
+       .value = "groundtruth|drawn|rest|auto",
+       .choices = {"groundtruth", "drawn", "rest", "auto"}},
       {.name = "cameras", .value = "0|1|0,1", .choices = {"0", "1", "0,1"}},
       {.name = "start", .value = "S"},
       {.name = "duration", .value = "S"},

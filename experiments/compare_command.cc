@@ -46,7 +46,7 @@ class Comparator {
  public:
   Comparator(const CommandLine& line, const LogCapture& log)
       : line_(line),
-        record_(FLAGS_out.empty() ? FreeFolder("duet-compare") : FLAGS_out, line, log),
+        record_(FLAGS_out.empty() ? FreeFolder("duet-compare") : FLAGS_out, line.text(), log),
         dataset_(FLAGS_dataset) {}
 
   int Run(const std::vector<Requirement>& requirements) {
@@ -156,10 +156,9 @@ class Comparator {
     if (!run.tracks_sha256.empty()) comparison_.tracks_sha256 = run.tracks_sha256;
     // NEES only where the tracks are no real camera's: the errors of real ones are not known well
     // enough for a claim.
-    if (session_.recording.truth && FLAGS_init == "groundtruth" && !run.trajectory.empty() &&
-        !fs::exists(session_.recording.folder / "cam0")) {
-      GroundTruth truth = *session_.recording.truth;
-      truth.poses = session_.TruthFor(session_.Setup());
+    if (session_.recording.truth && (FLAGS_init == "groundtruth" || FLAGS_init == "drawn") &&
+        !run.trajectory.empty() && !fs::exists(session_.recording.folder / "cam0")) {
+      const GroundTruth truth = session_.TruthStatesFor(session_.Setup());
       run.run.nees = SummarizeNees(ComputeRecordNees(folder, truth),
                                    session_.configuration.evaluation.nees_settle_s);
     }

@@ -5,7 +5,7 @@ namespace duet {
 /// What the program returns (DESIGN.md section 6).
 enum ExitStatus : int {
   kDone = 0,             ///< also a comparison in which one estimator failed
-  kBoundNotMet = 1,      ///< a bound asked for with --require does not hold
+  kBoundNotMet = 1,      ///< of --require; or duet verify has found something wrong
   kBadInput = 2,         ///< usage, a file, a key
   kEstimatorFailed = 3,  ///< a single run's estimator failed
   kWritingFailed = 4,

@@ -31,17 +31,22 @@ void RequireAbsent(const std::string& out) {
   }
 }
 
-RecordFolder::RecordFolder(const std::string& out, const CommandLine& line, const LogCapture& log)
-    : log_(log), manifest_(StartManifest(line.text())), folder_(out) {}
+RecordFolder::RecordFolder(const std::string& out, const std::string& command_line,
+                           const LogCapture& log, OutputFolder::Makers makers)
+    : log_(log), manifest_(StartManifest(command_line)), folder_(out, makers) {}
 
 void RecordFolder::Commit(const ConfigSources& sources) {
+  WriteRest(sources);
+  folder_.Commit();
+}
+
+void RecordFolder::WriteRest(const ConfigSources& sources) {
   manifest_["settings_sha256"] = sources.SettingsSha256();
   if (!manifest_.contains("warnings")) manifest_["warnings"] = Manifest::array();
   for (const std::string& warning : log_.warnings()) manifest_["warnings"].push_back(warning);
   WriteTextFile(path() / "config.yaml", sources.ResolvedYaml());
   WriteTextFile(path() / "log.txt", log_.text());
   WriteManifest(manifest_, path());
-  folder_.Commit();
 }
 
 Manifest DescribeRecording(const Recording& recording) {

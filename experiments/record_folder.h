@@ -7,7 +7,6 @@
 #include "common/config/config_sources.h"
 #include "common/dataset/recording.h"
 #include "common/support/output_folder.h"
-#include "experiments/command_line.h"
 #include "experiments/live_tracker.h"
 #include "experiments/log_capture.h"
 #include "experiments/manifest.h"
@@ -21,7 +20,8 @@ void RequireAbsent(const std::string& out);
 /// log.txt) is written by Commit().
 class RecordFolder {
  public:
-  RecordFolder(const std::string& out, const CommandLine& line, const LogCapture& log);
+  RecordFolder(const std::string& out, const std::string& command_line, const LogCapture& log,
+               OutputFolder::Makers makers = OutputFolder::Makers::kOne);
 
   /// Where files go until Commit().
   [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
@@ -30,6 +30,11 @@ class RecordFolder {
 
   /// Writes what is left and puts the folder into its place. Throws OutputError.
   void Commit(const ConfigSources& sources);
+
+  /// The two halves of Commit, for who computes something from what is written, or puts the folder
+  /// into its place otherwise.
+  void WriteRest(const ConfigSources& sources);
+  [[nodiscard]] OutputFolder& folder() { return folder_; }
 
  private:
   const LogCapture& log_;

@@ -19,7 +19,20 @@ std::string DescribeEnd(const ChildResult& child) {
   return "its process ended with status " + std::to_string(child.exit_status);
 }
 
-/// The truth's pose interpolated; velocity and biases linear between its rows.
+void AddRunTimes(const std::vector<std::pair<std::string, std::vector<double>>>& columns,
+                 EstimatorRun* run) {
+  for (const auto& [column, values] : columns) {
+    if (column == "estimator") {
+      run->estimator_ms = Summarize(values);
+    } else if (column.rfind(kEstimatorPrefix, 0) == 0) {
+      run->stage_median_ms.emplace_back(column.substr(kEstimatorPrefix.size()),
+                                        Summarize(values).median);
+    }
+  }
+}
+
+}  // namespace
+
 std::optional<InertialState> TruthStateAt(const GroundTruth& truth, Timestamp t) {
   const std::optional<Pose> pose =
       InterpolatePose(truth.poses, t, AssociationOptions{}.max_truth_gap_s);
@@ -49,20 +62,6 @@ std::optional<InertialState> TruthStateAt(const GroundTruth& truth, Timestamp t)
   }
   return state;
 }
-
-void AddRunTimes(const std::vector<std::pair<std::string, std::vector<double>>>& columns,
-                 EstimatorRun* run) {
-  for (const auto& [column, values] : columns) {
-    if (column == "estimator") {
-      run->estimator_ms = Summarize(values);
-    } else if (column.rfind(kEstimatorPrefix, 0) == 0) {
-      run->stage_median_ms.emplace_back(column.substr(kEstimatorPrefix.size()),
-                                        Summarize(values).median);
-    }
-  }
-}
-
-}  // namespace
 
 RunRecord ReadRunRecord(const fs::path& folder, const ChildResult& child, Timestamp span_start) {
   RunRecord record;

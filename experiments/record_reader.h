@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +32,10 @@ struct RunRecord {
 /// What `duet track` has left, and the part of it that its manifest.json tells.
 [[nodiscard]] FrontendRun ReadTrackRecord(const std::filesystem::path& folder);
 [[nodiscard]] FrontendRun ReadTrackManifest(const ManifestReader& manifest);
+
+/// The truth's pose interpolated; velocity and biases linear between its rows, zero where it has
+/// none. Nothing outside of it and in its gaps.
+[[nodiscard]] std::optional<InertialState> TruthStateAt(const GroundTruth& truth, Timestamp t);
 
 /// NEES at each state of a record that has covariance.csv, against a truth with velocities.
 [[nodiscard]] NeesRun ComputeRecordNees(const std::filesystem::path& folder,

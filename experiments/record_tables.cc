@@ -64,6 +64,32 @@ std::vector<RecordedCovariance> ReadCovarianceTable(std::string_view csv, const 
   return rows;
 }
 
+Eigen::MatrixXd ReadLastCovariance(std::string_view csv, const std::string& file) {
+  const std::size_t end = csv.find_last_not_of("\r\n");
+  if (end == std::string_view::npos) return {};
+  const std::size_t before = csv.find_last_of('\n', end);
+  const std::size_t begin = before == std::string_view::npos ? 0 : before + 1;
+  CsvReader reader(csv.substr(begin), file, {});
+  if (!reader.Next()) return {};
+  if (reader.column_count() < 2) reader.Fail(0, "expected a stamp, a size and a covariance");
+  const std::uint64_t size = reader.Unsigned(1);
+  if (size < kStateSize || size > kLargestCovariance ||
+      static_cast<std::uint64_t>(reader.column_count()) != 2 + size * (size + 1) / 2) {
+    reader.Fail(1, "expected the size of a covariance of at least 15 rows and so many numbers");
+  }
+  Eigen::MatrixXd covariance(static_cast<Eigen::Index>(size), static_cast<Eigen::Index>(size));
+  int next = 2;
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      const std::optional<double> value = ParseDouble(reader.Text(next));
+      if (!value) reader.Fail(next, "expected a number");
+      covariance(i, j) = covariance(j, i) = *value;
+      ++next;
+    }
+  }
+  return covariance;
+}
+
 double ReadFeatureMean(std::string_view csv, const std::string& file, const std::string& column) {
   std::vector<std::string> names = ReadColumnNames(csv, file);
   const auto found = std::find(names.begin(), names.end(), column);

@@ -24,6 +24,10 @@ struct RecordedCovariance {
 [[nodiscard]] std::vector<RecordedCovariance> ReadCovarianceTable(std::string_view csv,
                                                                   const std::string& file);
 
+/// The whole of the last row's covariance, with the calibration's part; empty where there is no
+/// row.
+[[nodiscard]] Eigen::MatrixXd ReadLastCovariance(std::string_view csv, const std::string& file);
+
 /// Mean over the frames of a column of features.csv; NaN where there was no frame.
 [[nodiscard]] double ReadFeatureMean(std::string_view csv, const std::string& file,
                                      const std::string& column);

@@ -2,16 +2,10 @@
 
 #include <cstdio>
 
-#include "common/support/input_error.h"
-#include "common/support/logging.h"
-#include "common/support/numeric_text.h"
 #include "experiments/commands.h"
 #include "experiments/common_flags.h"
-#include "experiments/estimation_loop.h"
+#include "experiments/estimator_run.h"
 #include "experiments/exit_status.h"
-#include "experiments/late_start.h"
-#include "experiments/record_folder.h"
-#include "experiments/session.h"
 
 DEFINE_string(backend, "", "The estimator.");
 DEFINE_string(tracks, "",
@@ -23,120 +17,31 @@ DEFINE_bool(covariance, false,
 namespace duet {
 namespace {
 
-const char* OutcomeName(LoopOutcome outcome) {
-  switch (outcome) {
-    case LoopOutcome::kDone:
-      return "done";
-    case LoopOutcome::kFailed:
-      return "failed";
-    case LoopOutcome::kInterrupted:
-      return "interrupted";
-  }
-  return "unknown";
-}
-
 ExitStatus StatusOf(LoopOutcome outcome) {
   if (outcome == LoopOutcome::kInterrupted) return kInterrupted;
   return outcome == LoopOutcome::kFailed ? kEstimatorFailed : kDone;
-}
-
-StartWait WaitOf(const RunSummary& summary, const std::string& start_reason) {
-  return {.frames_waited = summary.waiting,
-          .frames = summary.frames,
-          .waited_s = summary.waited_s,
-          .missing = summary.first_instant && summary.waiting == 0 ? "" : start_reason};
-}
-
-Manifest DescribeOutcome(LoopOutcome outcome, const RunSummary& summary, const StartWait& wait) {
-  Manifest manifest = {{"status", OutcomeName(outcome)},
-                       {"reason", ""},
-                       {"last_status", EstimatorStatusName(summary.last_status)},
-                       {"frames", summary.frames},
-                       {"waiting", wait.frames_waited},
-                       {"waited_s", wait.waited_s},
-                       {"waited_for", wait.missing},
-                       {"tracking", summary.tracking},
-                       {"dead_reckoned", summary.dead_reckoning},
-                       {"skipped", summary.skipped}};
-  if (outcome == LoopOutcome::kFailed) {
-    manifest["reason"] =
-        summary.failure.empty() ? "did not start: " + wait.missing : summary.failure;
-  }
-  if (summary.failure_instant) manifest["failed_at_ns"] = *summary.failure_instant;
-  if (summary.first_instant) manifest["first_state_ns"] = *summary.first_instant;
-  if (summary.last_instant) manifest["last_good_state_ns"] = *summary.last_instant;
-  return manifest;
 }
 
 int RunRun(const CommandLine& line) {
   RequireAbsent(FLAGS_out);
   LogCapture log(FLAGS_quiet);
   Session session = OpenSession(line, FLAGS_dataset, FLAGS_tracks);
-  EstimatorStart start = session.Start();
-  const EstimatorSetup setup = session.Setup();
-  const std::unique_ptr<Estimator> estimator =
-      MakeEstimator(FLAGS_backend, setup, session.configuration.backends);
-  RecordFolder record(FLAGS_out, line, log);
-  Manifest& manifest = record.manifest();
-  manifest["dataset"] = DescribeRecording(session.recording);
-
-  std::vector<TrackFrameSet> tracked;  // of a live run
-  std::unique_ptr<LiveTracker> tracker;
-  std::unique_ptr<FrameSource> replay;
-  if (session.recording.vision == Vision::kImages) {
-    tracker = StartTracking(session, [&](const TrackFrameSet& tracks, const ImageSet& /*images*/) {
-      tracked.push_back(tracks);
-    });
-  } else {
-    manifest["tracks_sha256"] = HashTrackStream(session.recording.tracks.frames);
-    replay = std::make_unique<TrackReplay>(std::move(session.recording.tracks.frames));
-  }
-  FrameSource& frames = tracker ? *tracker : *replay;
-
-  RunRecorder recorder(record.path(), estimator->layout(), setup.rig, FLAGS_covariance);
-  TimingLog timing;
-  Progress progress(FLAGS_backend, frames.count(), "frames", FLAGS_quiet);
-  const LoopOutcome outcome =
-      RunEstimationLoop({.frames = frames,
-                         .imu = session.recording.imu,
-                         .imu_horizon_s = ImuHorizon(session.configuration.shared),
-                         .start = start,
-                         .estimator = *estimator,
-                         .recorder = recorder,
-                         .timing = timing,
-                         .progress = progress});
-  recorder.Close();
-  timing.Write(record.path() / "timing.csv");
-  manifest["peak_memory_mb"] = PeakMemoryMb();
-  if (tracker) {
-    manifest["tracks_sha256"] =
-        WriteTracks(record.path(), session.recording, tracked, session.sources.values());
-    manifest["frontend"] = DescribeTracking(*tracker, tracked);
-  }
-  manifest["backend"] = FLAGS_backend;
-  manifest["init"] = FLAGS_init;
-  manifest["seed"] = FLAGS_seed;
-  const StartWait wait = WaitOf(recorder.summary(), start.reason());
-  manifest["outcome"] = DescribeOutcome(outcome, recorder.summary(), wait);
-  const std::string reason = manifest["outcome"]["reason"];
-  progress.Finish(OutcomeName(outcome) + (reason.empty() ? "" : ": " + reason));
-  if (outcome == LoopOutcome::kFailed) LOG(WARNING) << FLAGS_backend << " failed: " << reason;
-  const std::optional<std::string> late =
-      recorder.summary().first_instant ? LateStartWarning(wait) : std::nullopt;
-  if (late) LOG(WARNING) << FLAGS_backend << " " << *late;
-  const std::vector<CalibrationWatch::Number> calibration = recorder.calibration().Numbers();
-  for (const std::string& warning : CalibrationWarnings(calibration)) {
-    LOG(WARNING) << FLAGS_backend << ": " << warning;
-  }
+  (void)session.Start();  // refuses a start that the recording does not allow, before the work
+  RecordFolder record(FLAGS_out, line.text(), log);
+  const EstimatorRunResult result =
+      RunEstimator({.backend = FLAGS_backend, .covariance = FLAGS_covariance, .quiet = FLAGS_quiet},
+                   &session, &record);
   record.Commit(session.sources);
-  const RunSummary& summary = recorder.summary();
+  const RunSummary& summary = result.summary;
   const std::string waited =
       summary.waiting > 0 ? ", " + std::to_string(summary.waiting) + " waited for the start" : "";
   std::printf("%s: %s, %d of %d frames tracked%s%s%s\n", FLAGS_backend.c_str(),
-              OutcomeName(outcome), summary.tracking, summary.frames, waited.c_str(),
-              reason.empty() ? "" : "; ", reason.c_str());
-  if (!calibration.empty()) std::fputs(CalibrationWatchText(calibration).c_str(), stdout);
-  return StatusOf(outcome);
+              OutcomeName(result.outcome), summary.tracking, summary.frames, waited.c_str(),
+              result.reason.empty() ? "" : "; ", result.reason.c_str());
+  if (!result.calibration.empty()) {
+    std::fputs(CalibrationWatchText(result.calibration).c_str(), stdout);
+  }
+  return StatusOf(result.outcome);
 }
 
 }  // namespace

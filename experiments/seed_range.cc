@@ -12,14 +12,15 @@ constexpr std::size_t kLongest = 18;
 
 }  // namespace
 
-SeedRange ParseSeeds(const std::string& text) {
+SeedRange ParseSeeds(const std::string& text, const std::string& file, int line,
+                     const std::string& key) {
   const std::size_t dots = text.find("..");
   SeedRange range;
   char end = 0;
   if (dots == std::string::npos ||
       std::sscanf(text.c_str(), "%d..%d%c", &range.first, &range.last, &end) != 2 ||
       text.size() > kLongest || range.first < 0 || range.last < range.first) {
-    throw InputError("", 0, "--seeds",
+    throw InputError(file, line, key,
                      "expected A..B with 0 <= A <= B of at most eight digits, got '" + text + "'");
   }
   return range;

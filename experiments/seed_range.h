@@ -10,7 +10,8 @@ struct SeedRange {
   int last = 0;
 };
 
-/// "A..B" of --seeds. Throws InputError.
-[[nodiscard]] SeedRange ParseSeeds(const std::string& text);
+/// "A..B" of --seeds, or of what `key` names. Throws InputError.
+[[nodiscard]] SeedRange ParseSeeds(const std::string& text, const std::string& file = "",
+                                   int line = 0, const std::string& key = "--seeds");
 
 }  // namespace duet

@@ -28,7 +28,7 @@ void CheckBounds(const RigCalibration& told, const SharedOptions& shared) {
 
 EstimatorSetup Session::SetupWith(const SharedOptions& shared) const {
   EstimatorSetup setup{.rig = ToldRig(recording.rig, shared.calibration),
-                       .imu_noise = recording.imu_sensor.noise,
+                       .imu_noise = shared.imu_noise_factors.Times(recording.imu_sensor.noise),
                        .g_G = recording.g_G(),
                        .shared = shared};
   CheckBounds(setup.rig, shared);
@@ -43,11 +43,25 @@ std::vector<StampedPose> Session::TruthFor(const EstimatorSetup& setup) const {
   return poses;
 }
 
+GroundTruth Session::TruthStatesFor(const EstimatorSetup& setup) const {
+  GroundTruth truth = *recording.truth;
+  truth.poses = TruthFor(setup);
+  return truth;
+}
+
 EstimatorStart Session::StartWith(const EstimatorSetup& setup) const {
-  const StartMode mode = FLAGS_init == "groundtruth" ? StartMode::kGroundTruth : StartMode::kRest;
-  if (mode == StartMode::kGroundTruth && !recording.truth) {
-    throw InputError("--init groundtruth: " + recording.folder.string() +
+  const StartMode mode = init == "groundtruth" ? StartMode::kGroundTruth : StartMode::kRest;
+  const bool from_truth = init == "groundtruth" || init == "drawn";
+  if (from_truth && !recording.truth) {
+    throw InputError("--init " + init + ": " + recording.folder.string() +
                      " has no ground truth (state_groundtruth_estimate0/data.csv)");
+  }
+  if (init == "drawn") {
+    if (!recording.truth->has_velocities() || !recording.truth->has_biases()) {
+      throw InputError(recording.truth_file, 0, "",
+                       "has no velocities or no biases; --init drawn starts from them");
+    }
+    return {setup, configuration.initialization, TruthStatesFor(setup), seed};
   }
   return {mode, setup, configuration.initialization,
           mode == StartMode::kGroundTruth ? TruthFor(setup) : std::vector<StampedPose>(),
@@ -57,6 +71,8 @@ EstimatorStart Session::StartWith(const EstimatorSetup& setup) const {
 Session OpenSession(const CommandLine& line, const std::string& dataset,
                     const std::string& tracks_folder) {
   Session session;
+  session.init = FLAGS_init;
+  session.seed = FLAGS_seed;
   session.configuration = LoadConfiguration(line, &session.sources);
   RecordingOptions options;
   options.cameras = CamerasAsked();
@@ -84,7 +100,7 @@ std::unique_ptr<LiveTracker> StartTracking(const Session& session, LiveTracker::
   }
   return std::make_unique<LiveTracker>(std::move(files), session.recording.rig,
                                        session.configuration.frontend,
-                                       session.configuration.shared.max_tracks, FLAGS_seed,
+                                       session.configuration.shared.max_tracks, session.seed,
                                        session.recording.imu, std::move(observer));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ struct Session {
   ConfigSources sources;
   Configuration configuration;
   Recording recording;
+  std::string init = "auto";  ///< --init
+  std::uint64_t seed = 0;     ///< --seed
 
   /// What estimators are told.
   [[nodiscard]] EstimatorSetup Setup() const { return SetupWith(configuration.shared); }
@@ -24,6 +27,8 @@ struct Session {
   /// The true poses (which there must be) in the axes that the setup's gauge ties the body to; the
   /// recording's calibration is taken as the true one.
   [[nodiscard]] std::vector<StampedPose> TruthFor(const EstimatorSetup& setup) const;
+  /// The whole truth in these axes.
+  [[nodiscard]] GroundTruth TruthStatesFor(const EstimatorSetup& setup) const;
   /// By --init. Throws InputError for a start from a truth that the recording does not have.
   [[nodiscard]] EstimatorStart Start() const { return StartWith(Setup()); }
   [[nodiscard]] EstimatorStart StartWith(const EstimatorSetup& setup) const;

@@ -58,7 +58,7 @@ int RunTrack(const CommandLine& line) {
     throw InputError(session.recording.folder.string(), 0, "",
                      "has no images to track (cam<k>/data.csv); its tracks can be run as they are");
   }
-  RecordFolder record(FLAGS_out, line, log);
+  RecordFolder record(FLAGS_out, line.text(), log);
   Overlay overlay;
   std::vector<TrackFrameSet> frames;
   const auto tracker = StartTracking(session, [&](const auto& tracks, const auto& images) {

@@ -19,6 +19,7 @@ struct InitializationOptions {
   double sigma_velocity_m_per_s = 0.05;
   double sigma_b_g_rad_per_s = 0.01;
   double sigma_b_a_m_per_s2 = 0.1;
+  double drawn_error_scale = 1.0;
   double fit_half_width_s = 0.25;
   double rest_duration_s = 0.5;
 
@@ -36,6 +37,10 @@ struct InitializationOptions {
             {.doc = "First gyroscope bias.", .unit = "rad/s", .min = 0});
     v.Field("sigma_b_a_m_per_s2", &sigma_b_a_m_per_s2,
             {.doc = "First accelerometer bias.", .unit = "m/s^2", .min = 0});
+    v.Field("drawn_error_scale", &drawn_error_scale,
+            {.doc = "A start that is drawn is off by this many times what sigma_* promise.",
+             .min = 0,
+             .max = 100});
     v.Field(
         "fit_half_width_s", &fit_half_width_s,
         {.doc = "Poses of the truth this far to either side give the first velocity and biases.",

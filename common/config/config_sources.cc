@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 #include <utility>
 
 #include "common/config/yaml_map.h"
@@ -35,6 +36,20 @@ std::vector<std::string> SplitKey(const std::string& key) {
     if (dot == std::string::npos) return names;
     start = dot + 1;
   }
+}
+
+/// Maps within maps, by the names of a key, that end in `node`; nothing where a name is empty.
+std::optional<YamlNode> Nested(const std::string& key, YamlNode node) {
+  const std::vector<std::string> names = SplitKey(key);
+  for (auto name = names.rbegin(); name != names.rend(); ++name) {
+    if (name->empty()) return std::nullopt;
+    YamlNode parent;
+    parent.kind = YamlNode::Kind::kMap;
+    parent.line = node.line;
+    parent.entries.push_back({*name, node.line, std::move(node)});
+    node = std::move(parent);
+  }
+  return node;
 }
 
 /// Assigns a node to a field where it is of the field's type and range.
@@ -132,6 +147,10 @@ void ConfigSources::AddText(std::string_view yaml, const std::string& file) {
     throw InputError(file, source.root.line, "",
                      "expected keys with values, got " + Describe(source.root));
   }
+  AddSource(std::move(source));
+}
+
+void ConfigSources::AddSource(Source source) {
   // Files rule over files before them, and overrides over every file.
   const auto first_override = std::find_if(sources_.begin(), sources_.end(),
                                            [](const Source& other) { return other.is_override; });
@@ -143,16 +162,16 @@ void ConfigSources::AddOverride(const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos) throw InputError(shown, 0, "", "expected KEY=VALUE");
   const std::string key = assignment.substr(0, equals);
-  YamlNode node = ParseYaml(std::string_view(assignment).substr(equals + 1), shown);
-  const std::vector<std::string> names = SplitKey(key);
-  for (auto name = names.rbegin(); name != names.rend(); ++name) {
-    if (name->empty()) throw InputError(shown, 0, "", "expected KEY=VALUE, got an empty key");
-    YamlNode parent;
-    parent.kind = YamlNode::Kind::kMap;
-    parent.entries.push_back({*name, 0, std::move(node)});
-    node = std::move(parent);
-  }
-  sources_.push_back({std::move(node), shown, true});
+  std::optional<YamlNode> node =
+      Nested(key, ParseYaml(std::string_view(assignment).substr(equals + 1), shown));
+  if (!node) throw InputError(shown, 0, "", "expected KEY=VALUE, got an empty key");
+  sources_.push_back({*std::move(node), shown, true});
+}
+
+void ConfigSources::AddKey(const std::string& key, const YamlNode& value, const std::string& file) {
+  std::optional<YamlNode> node = Nested(key, value);
+  if (!node) throw InputError(file, value.line, key, "expected names joined by dots");
+  AddSource({*std::move(node), file, false});
 }
 
 void ConfigSources::AddChild(const std::string& group, const std::string& name) {

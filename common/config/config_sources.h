@@ -41,6 +41,9 @@ class ConfigSources {
   void AddText(std::string_view yaml, const std::string& file);
   /// "key.sub=value", the value in YAML ("true", "[1, 2]"); from the command line.
   void AddOverride(const std::string& assignment);
+  /// One key of a file that is no configuration itself ("msckf.window" below a study's `set`); it
+  /// rules as the file's text would.
+  void AddKey(const std::string& key, const YamlNode& value, const std::string& file);
 
   /// Fills the struct from the sources; its fields' keys stand below `section` ("shared",
   /// "study.world"). A section is read once.
@@ -74,6 +77,7 @@ class ConfigSources {
     std::vector<std::string> children;  ///< names, in the order of reading
   };
 
+  void AddSource(Source source);
   void StartSection(const std::string& section);
   void AddChild(const std::string& group, const std::string& name);
   [[nodiscard]] const YamlNode* FindIn(const Source& source, const std::string& key) const;

@@ -5,13 +5,18 @@
 namespace duet {
 
 /// An output folder that is complete or absent (DESIGN.md section 4): everything is written into a
-/// sibling `TARGET.partial-<pid>`, which Commit() renames to the target. Without Commit() the
-/// destructor removes it.
+/// sibling `TARGET.partial-<host>-<pid>`, which Commit() renames to the target. Without Commit()
+/// the destructor removes it.
 class OutputFolder {
  public:
+  enum class Makers {
+    kOne,
+    kSeveral,  ///< others may be making the same target, on other machines too: CommitUnlessThere
+  };
+
   /// Makes the temporary folder, and the target's parents where they are missing. Throws
-  /// OutputError where the target exists or cannot be made.
-  explicit OutputFolder(const std::filesystem::path& target);
+  /// OutputError where the target cannot be made or, with one maker, exists.
+  explicit OutputFolder(const std::filesystem::path& target, Makers makers = Makers::kOne);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -24,10 +29,18 @@ class OutputFolder {
   /// meanwhile.
   void Commit();
 
+  /// The same with several makers: false where another one was first; its folder stays, this one is
+  /// removed.
+  [[nodiscard]] bool CommitUnlessThere();
+
  private:
   std::filesystem::path target_;
   std::filesystem::path partial_;
   bool committed_ = false;
 };
+
+/// The partial folders in `folder` that processes of this machine have left which are no more.
+/// Those of other machines, and of processes that run, are left alone.
+void RemoveAbandonedPartials(const std::filesystem::path& folder);
 
 }  // namespace duet

@@ -1,6 +1,10 @@
 #include "common/support/text_file.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 
 #include "common/support/input_error.h"
@@ -61,6 +65,29 @@ void WriteTextFile(const std::filesystem::path& path, std::string_view text) {
   TextFileWriter writer(path);
   writer.Write(text);
   writer.Close();
+}
+
+void ReplaceTextFile(const std::filesystem::path& path, std::string_view text) {
+  std::string name = path.string() + ".partial-XXXXXX";
+  const int descriptor = mkstemp(name.data());
+  if (descriptor < 0) {
+    throw OutputError(path.string(), std::string("cannot be written: ") + std::strerror(errno));
+  }
+  constexpr mode_t kReadable = 0644;
+  (void)fchmod(descriptor, kReadable);
+  close(descriptor);
+  std::error_code error;
+  try {
+    WriteTextFile(name, text);
+  } catch (const OutputError&) {
+    std::filesystem::remove(name, error);
+    throw;
+  }
+  std::filesystem::rename(name, path, error);
+  if (!error) return;
+  const std::string why = error.message();
+  std::filesystem::remove(name, error);
+  throw OutputError(path.string(), "cannot be replaced: " + why);
 }
 
 }  // namespace duet

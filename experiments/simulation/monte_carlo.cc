@@ -103,6 +103,15 @@ Matrix15d StartCovariance(const InitializationOptions& start, double scale) {
   return (scale * sigma).cwiseAbs2().asDiagonal();
 }
 
+InitialCondition DrawStart(const InertialState& truth, const InitializationOptions& start,
+                           double scale, std::uint64_t seed) {
+  Random random(seed, kStartStream);
+  InitialCondition drawn =
+      DrawInitialCondition(truth, StartCovariance(start, scale * start.drawn_error_scale), &random);
+  drawn.covariance = StartCovariance(start, scale);
+  return drawn;
+}
+
 MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,
                       const EstimatorMaker& make_estimator) {
   SimulationOptions simulation = options.simulation;
@@ -121,14 +130,13 @@ MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,
   const EstimatorSetup setup = MakeSetup(recording, shared);
   const std::unique_ptr<Estimator> estimator = make_estimator(setup);
 
-  Random random(static_cast<std::uint64_t>(seed), kStartStream);
   const Timestamp first_instant =
       recording.frames.front().timestamp + ToNanoseconds(recording.told_rig.t_d_s);
   const Eigen::Quaterniond gauge =
       GaugeRotation(recording.true_rig, recording.told_rig, shared.calibration);
-  estimator->Initialize(DrawInitialCondition(Reoriented(recording.TruthAt(first_instant), gauge),
-                                             StartCovariance(options.start, options.noise_scale),
-                                             &random));
+  estimator->Initialize(DrawStart(Reoriented(recording.TruthAt(first_instant), gauge),
+                                  options.start, options.noise_scale,
+                                  static_cast<std::uint64_t>(seed)));
 
   MonteCarloRun run;
   run.seed = seed;

@@ -87,6 +87,12 @@ struct MonteCarloResult {
 /// The first state's covariance: order theta, p, v, b_g, b_a; theta in G, so that its z is yaw.
 [[nodiscard]] Matrix15d StartCovariance(const InitializationOptions& start, double scale);
 
+/// The start of a run: the truth, off by an error that is drawn from StartCovariance(start, scale)
+/// by a random sequence of its own, times start.drawn_error_scale.
+[[nodiscard]] InitialCondition DrawStart(const InertialState& truth,
+                                         const InitializationOptions& start, double scale,
+                                         std::uint64_t seed);
+
 /// The table of a study for the terminal.
 [[nodiscard]] std::string MonteCarloText(const std::string& title, const MonteCarloResult& result);
 

@@ -195,7 +195,7 @@ InitialCondition DrawInitialCondition(const InertialState& truth, const Matrix15
 EstimatorSetup MakeSetup(const SimulatedRecording& recording, const SharedOptions& shared) {
   EstimatorSetup setup;
   setup.rig = recording.told_rig;
-  setup.imu_noise = recording.noise;
+  setup.imu_noise = shared.imu_noise_factors.Times(recording.noise);
   setup.g_G = recording.g_G;
   setup.shared = shared;
   setup.shared.pixel_noise_px = recording.pixel_noise_px;

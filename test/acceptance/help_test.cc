@@ -25,7 +25,7 @@ TEST(HelpTest, ListsEveryCommand) {
 TEST(HelpTest, OfACommandShowsItsFlagsOnlyWithDefaultsAndUnits) {
   const std::string run = RunDuet({"help", "run"}).out;
   for (const char* flag : {"--dataset DIR", "--backend msckf|window", "--out DIR", "--config FILE",
-                           "--set KEY=VALUE", "--init groundtruth|rest|auto", "--cameras 0|1|0,1",
+                           "--set KEY=VALUE", "--init groundtruth|drawn|rest|auto", "--cameras 0|1|0,1",
                            "--start S", "--duration S", "--alignment posyaw|se3|sim3|first|none",
                            "--threads N", "--seed N", "--quiet", "--tracks DIR"}) {
     EXPECT_THAT(run, HasSubstr(flag));

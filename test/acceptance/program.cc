@@ -15,10 +15,8 @@ namespace duet {
 namespace fs = std::filesystem;
 namespace {
 
-[[noreturn]] void BecomeDuet(const std::vector<std::string>& arguments, const std::string& out,
-                             const std::string& err) {
-  std::vector<std::string> words = {DUET_PROGRAM};
-  words.insert(words.end(), arguments.begin(), arguments.end());
+[[noreturn]] void BecomeProgram(std::vector<std::string> words, const std::string& out,
+                                const std::string& err) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
@@ -28,27 +26,38 @@ namespace {
   _exit(127);
 }
 
-}  // namespace
-
-ProgramResult RunDuet(const std::vector<std::string>& arguments,
-                      const std::function<bool()>& interrupt_when) {
+ProgramResult RunProgram(const std::vector<std::string>& words,
+                         const std::function<bool()>& interrupt_when, int signal) {
   constexpr useconds_t kPoll_us = 5000;
   const TemporaryFolder folder;
   const std::string out = folder / "out";
   const std::string err = folder / "err";
   const pid_t child = fork();
-  if (child == 0) BecomeDuet(arguments, out, err);
+  if (child == 0) BecomeProgram(words, out, err);
   int status = 0;
   bool interrupted = interrupt_when == nullptr;
   while (waitpid(child, &status, interrupted ? 0 : WNOHANG) == 0) {
     if (interrupt_when()) {
-      kill(child, SIGINT);
+      kill(child, signal);
       interrupted = true;
     }
     usleep(kPoll_us);
   }
   return {WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status), ReadFile(out),
           ReadFile(err)};
+}
+
+}  // namespace
+
+ProgramResult RunDuet(const std::vector<std::string>& arguments,
+                      const std::function<bool()>& interrupt_when, int signal) {
+  std::vector<std::string> words = {DUET_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return RunProgram(words, interrupt_when, signal);
+}
+
+ProgramResult RunShell(const std::string& command) {
+  return RunProgram({"/bin/sh", "-c", "export DUET='" DUET_PROGRAM "'\n" + command}, nullptr, 0);
 }
 
 TemporaryFolder::TemporaryFolder() {

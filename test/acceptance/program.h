@@ -1,5 +1,6 @@
 #pragma once
 
+#include <csignal>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -15,9 +16,12 @@ struct ProgramResult {
 };
 
 /// Runs the built `duet` with these arguments and waits for it. Where `interrupt_when` is given, it
-/// is asked again and again, and when it says yes the program gets SIGINT, once.
+/// is asked again and again, and when it says yes the program gets `signal`, once.
 [[nodiscard]] ProgramResult RunDuet(const std::vector<std::string>& arguments,
-                                    const std::function<bool()>& interrupt_when = nullptr);
+                                    const std::function<bool()>& interrupt_when = nullptr,
+                                    int signal = SIGINT);
+/// The same for a command of the shell, in which "$DUET" is the built program.
+[[nodiscard]] ProgramResult RunShell(const std::string& command);
 
 /// A folder that goes with the object.
 class TemporaryFolder {

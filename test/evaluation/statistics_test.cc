@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "evaluation/chi_squared.h"
+#include "evaluation/holm.h"
 #include "evaluation/text_table.h"
 
 namespace duet {

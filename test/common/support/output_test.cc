@@ -93,5 +93,50 @@ TEST(InputErrorText, NamesFileLineAndKey) {
   EXPECT_STREQ(InputError("", 7, "", "text").what(), "line 7: text");
 }
 
+TEST_F(OutputTest, OfSeveralMakersOneIsKeptWhole) {
+  OutputFolder first(folder_ / "run", OutputFolder::Makers::kSeveral);
+  OutputFolder second(folder_ / "run", OutputFolder::Makers::kSeveral);
+  WriteTextFile(first.path() / "file.txt", "first");
+  WriteTextFile(second.path() / "file.txt", "second");
+  EXPECT_TRUE(first.CommitUnlessThere());
+  EXPECT_FALSE(second.CommitUnlessThere());
+  EXPECT_EQ(ReadTextFile(folder_ / "run" / "file.txt"), "first");
+  EXPECT_EQ(CountEntries(), 1);
+  // One that comes when all is done is no error either.
+  OutputFolder third(folder_ / "run", OutputFolder::Makers::kSeveral);
+  WriteTextFile(third.path() / "file.txt", "third");
+  EXPECT_FALSE(third.CommitUnlessThere());
+  EXPECT_EQ(CountEntries(), 1);
+}
+
+TEST_F(OutputTest, WhatDeadProcessesLeftIsRemovedAndNothingElse) {
+  OutputFolder living(folder_ / "living");
+  const std::string mine = living.path().filename().string();
+  const std::string own_pid = std::to_string(getpid());
+  const auto named = [&](const std::string& name, const std::string& pid) {
+    std::string partial = mine;
+    partial.replace(0, std::string("living").size(), name);
+    return partial.replace(partial.size() - own_pid.size(), own_pid.size(), pid);
+  };
+  constexpr const char* kNoProcess = "2147483646";
+  fs::create_directory(folder_ / named("dead", kNoProcess));
+  fs::create_directory(folder_ / (named("dead", kNoProcess) + "-1"));
+  fs::create_directory(folder_ / named("parent", std::to_string(getppid())));
+  fs::create_directory(folder_ / ("dead.partial-another-host-" + std::string(kNoProcess)));
+  fs::create_directory(folder_ / "done");
+  RemoveAbandonedPartials(folder_);
+  EXPECT_EQ(CountEntries(), 4);
+  EXPECT_TRUE(fs::exists(living.path()));
+  EXPECT_TRUE(fs::exists(folder_ / "done"));
+}
+
+TEST_F(OutputTest, AReplacedFileIsTheNewOneAndLeavesNothingBeside) {
+  ReplaceTextFile(folder_ / "file", "old");
+  ReplaceTextFile(folder_ / "file", "new");
+  EXPECT_EQ(ReadTextFile(folder_ / "file"), "new");
+  EXPECT_EQ(CountEntries(), 1);
+  EXPECT_THROW(ReplaceTextFile(folder_ / "no" / "file", "text"), OutputError);
+}
+
 }  // namespace
 }  // namespace duet

@@ -1,0 +1,119 @@
+#include "evaluation/paired_test.h"
+
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "evaluation/proportion.h"
+
+namespace duet {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+bool BothRan(const PairedRuns& pair) { return !pair.first_failed && !pair.second_failed; }
+bool HaveValues(const PairedRuns& pair) {
+  return BothRan(pair) && std::isfinite(pair.first) && std::isfinite(pair.second);
+}
+
+/// An error whose values, in every pair, have a logarithm.
+bool IsRatio(std::span<const std::vector<PairedRuns>> strata, const Metric& metric) {
+  if (metric.better != Better::kLower) return false;
+  for (const auto& stratum : strata) {
+    for (const PairedRuns& pair : stratum) {
+      if (HaveValues(pair) && !(pair.first > 0.0 && pair.second > 0.0)) return false;
+    }
+  }
+  return true;
+}
+
+double ShownDifference(const PairedRuns& pair, const Metric& metric) {
+  // Of an error with a sign the magnitudes are compared, of NEES the distances to what is expected.
+  const bool raw = metric.better == Better::kLower || metric.better == Better::kHigher ||
+                   metric.better == Better::kNeither;
+  return raw ? pair.first - pair.second : metric.Score(pair.first) - metric.Score(pair.second);
+}
+
+/// See PairedComparison::detectable; `interval` is symmetric enough for its length to tell the
+/// standard error.
+double DetectableDifference(const Band& interval, double confidence) {
+  const boost::math::normal normal;
+  const double sigmas = 2.0 * boost::math::quantile(normal, 0.5 + 0.5 * confidence);
+  const double standard_error = (interval.high - interval.low) / sigmas;
+  return (boost::math::quantile(normal, 0.975) + boost::math::quantile(normal, 0.8)) *
+         standard_error;
+}
+
+void CountPairs(std::span<const std::vector<PairedRuns>> strata, PairedComparison* comparison) {
+  for (const auto& stratum : strata) {
+    bool any = false;
+    for (const PairedRuns& pair : stratum) {
+      if (pair.first_failed && pair.second_failed) {
+        ++comparison->both_failed;
+      } else if (pair.first_failed) {
+        ++comparison->only_first_failed;
+      } else if (pair.second_failed) {
+        ++comparison->only_second_failed;
+      } else if (!HaveValues(pair)) {
+        ++comparison->without_value;
+      } else {
+        ++comparison->pairs;
+      }
+      any = any || !BothRan(pair) || HaveValues(pair);
+    }
+    if (any) ++comparison->strata;
+  }
+}
+
+}  // namespace
+
+PairedComparison::PairedComparison()
+    : ratio(kNaN), ratio_interval{kNaN, kNaN}, difference(kNaN), difference_interval{kNaN, kNaN} {}
+
+PairedComparison ComparePairs(std::span<const std::vector<PairedRuns>> strata, const Metric& metric,
+                              const PairedOptions& options) {
+  PairedComparison comparison;
+  CountPairs(strata, &comparison);
+  comparison.is_ratio = IsRatio(strata, metric) && comparison.pairs > 0;
+
+  std::vector<std::vector<double>> logarithms(strata.size());
+  std::vector<std::vector<double>> differences(strata.size());
+  std::vector<double> scores;  // of the test: the smaller, the better the first
+  for (std::size_t s = 0; s < strata.size(); ++s) {
+    for (const PairedRuns& pair : strata[s]) {
+      if (pair.first_failed != pair.second_failed) {
+        scores.push_back(pair.first_failed ? std::numeric_limits<double>::infinity()
+                                           : -std::numeric_limits<double>::infinity());
+      }
+      if (!HaveValues(pair)) continue;
+      differences[s].push_back(ShownDifference(pair, metric));
+      if (comparison.is_ratio) logarithms[s].push_back(std::log(pair.first / pair.second));
+      scores.push_back(comparison.is_ratio ? logarithms[s].back()
+                                           : metric.Score(pair.first) - metric.Score(pair.second));
+    }
+  }
+  comparison.test = SignedRankTest(scores, options.signed_rank);
+  comparison.failure_p_value =
+      McNemarPValue(comparison.only_first_failed, comparison.only_second_failed);
+  if (comparison.pairs == 0) return comparison;
+
+  const auto estimate = [](const std::vector<std::vector<double>>& values) {
+    std::vector<double> all;
+    for (const auto& stratum : values) all.insert(all.end(), stratum.begin(), stratum.end());
+    return HodgesLehmann(all);
+  };
+  comparison.difference = estimate(differences);
+  comparison.difference_interval = BootstrapInterval(differences, HodgesLehmann, options.bootstrap);
+  comparison.detectable =
+      DetectableDifference(comparison.difference_interval, options.bootstrap.confidence);
+  if (comparison.is_ratio) {
+    comparison.ratio = std::exp(estimate(logarithms));
+    const Band interval = BootstrapInterval(logarithms, HodgesLehmann, options.bootstrap);
+    comparison.ratio_interval = {std::exp(interval.low), std::exp(interval.high)};
+    comparison.detectable = std::exp(DetectableDifference(interval, options.bootstrap.confidence));
+  }
+  return comparison;
+}
+
+}  // namespace duet

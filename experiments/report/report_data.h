@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "experiments/report/report.h"
+
+namespace duet {
+
+/// What the page's script is given (web/src/data.js), as JSON:
+///   format       "duet report 1"
+///   columns      of the curves (run_curves.h)
+///   estimators   names, in the order of their colours
+///   alignment    "none" or "posyaw": what is shown first
+///   metrics      KEY: {label}
+///   nees         BLOCK: {dof, band: [low, high]} of one instant; confidence
+///   runs         the coordinates and metrics of StudyRun, stream_id, and of those with states
+///                `curves` (EncodeCurves) and `alignment` {R, p, orientation_R}, rotations as
+///                x y z w; null where there is none
+/// Numbers that are not finite are null.
+[[nodiscard]] std::string ReportDataJson(const Report& report);
+
+}  // namespace duet

@@ -1,0 +1,199 @@
+#include "experiments/study/study_records.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "common/config/config_sources.h"
+#include "common/dataset/csv_reader.h"
+#include "common/support/input_error.h"
+#include "common/support/numeric_text.h"
+#include "common/support/text_file.h"
+#include "evaluation/statistics.h"
+#include "evaluation/text_table.h"
+#include "experiments/configuration.h"
+#include "experiments/manifest_reader.h"
+#include "experiments/settings_foot.h"
+#include "experiments/study/record_version.h"
+#include "experiments/study/run_evaluation.h"
+#include "experiments/study/study_run.h"
+
+namespace duet {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPlanHeader = "#id,stream_id,stream,estimator,setting,perturbation,seed\n";
+
+/// Fills a run in from its record, which must be of the records' version; false where there is
+/// none.
+bool ReadRecordOf(const fs::path& folder, std::optional<RecordVersion>* version, StudyRun* run) {
+  const fs::path record = RecordFolderOf(folder, run->id);
+  if (!fs::exists(record)) {
+    run->failed = true;
+    const fs::path failure = FailureFile(folder, run->id);
+    run->reason =
+        fs::exists(failure) ? ReadTextFile(failure) : "there is no record: it did not run";
+    while (run->reason.ends_with('\n')) run->reason.pop_back();
+    return false;
+  }
+  const RunEvaluation evaluation = ReadEvaluation(record);
+  run->failed = evaluation.failed;
+  run->reason = evaluation.reason;
+  run->metrics = evaluation.metrics;
+  for (auto& cost : CostOfRecord(record)) run->metrics.push_back(std::move(cost));
+  const fs::path file = record / "manifest.json";
+  const ManifestReader manifest(ReadTextFile(file), file.string());
+  run->tracks_sha256 = manifest.Text("tracks_sha256");
+  const RecordVersion own{manifest.Text("version"), manifest.Text("commit")};
+  if (!*version) *version = own;
+  if (!(own == **version)) {
+    throw InputError(record.string(), 0, "",
+                     "was made by " + own.Text() + ", others by " + (*version)->Text() +
+                         "; results of two are not mixed");
+  }
+  return true;
+}
+
+std::string Count(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+/// What was switched on in the first record of each estimator and setting.
+void AddFoot(const StudyFolder& folder, std::vector<std::string>* foot) {
+  std::vector<std::string> seen;
+  std::optional<RecordVersion> version;
+  std::size_t records = 0;
+  for (std::size_t i = 0; i < folder.result.runs.size(); ++i) {
+    const StudyRun& run = folder.result.runs[i];
+    const fs::path& record = folder.record_of_run[i];
+    if (record.empty()) continue;
+    ++records;
+    const std::string name = run.estimator + ", " + run.setting;
+    if (std::find(seen.begin(), seen.end(), name) != seen.end()) continue;
+    seen.push_back(name);
+    if (!version) version = VersionOf(record);
+    ConfigSources sources;
+    sources.AddFile(record / "config.yaml");
+    Configuration configuration;
+    configuration.Read(&sources);
+    std::string line = name + ":";
+    for (const auto& [title, value] : SettingsFoot(sources.values(), run.estimator, record)) {
+      line += (line.back() == ':' ? " " : ", ") + title + " " + value;
+    }
+    foot->push_back(line);
+  }
+  foot->push_back("made from " + Count(records, "record") + " of " +
+                  Count(folder.result.runs.size(), "run") +
+                  (version ? " by " + version->Text() : ""));
+}
+
+std::string Quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+const double* FindValue(const StudyRun& run, const std::string& key) {
+  for (const auto& [name, value] : run.metrics) {
+    if (name == key) return &value;
+  }
+  return nullptr;
+}
+
+/// Every key of any run; those of later runs stand behind the key that they follow there.
+std::vector<std::string> MetricColumns(const StudyResult& result) {
+  std::vector<std::string> columns;
+  for (const StudyRun& run : result.runs) {
+    auto behind = columns.begin();
+    for (const auto& [key, value] : run.metrics) {
+      const auto found = std::find(columns.begin(), columns.end(), key);
+      behind = (found == columns.end() ? columns.insert(behind, key) : found) + 1;
+    }
+  }
+  return columns;
+}
+
+}  // namespace
+
+fs::path FailureFile(const fs::path& folder, const std::string& id) {
+  return folder / "failures" / id;
+}
+
+std::vector<StudyRun> ReadPlan(const fs::path& folder) {
+  const fs::path file = folder / "plan.csv";
+  const std::string text = ReadTextFile(file);
+  CsvReader reader(text, file.string(),
+                   {{"id", "stream_id", "stream", "estimator", "setting", "perturbation", "seed"}});
+  std::vector<StudyRun> runs;
+  while (reader.Next()) {
+    StudyRun& run = runs.emplace_back();
+    run.id = reader.Text(0);
+    run.stream_id = reader.Text(1);
+    run.stream = reader.Text(2);
+    run.estimator = reader.Text(3);
+    run.setting = reader.Text(4);
+    run.perturbation = reader.Text(5);
+    run.seed = static_cast<int>(reader.Unsigned(6));
+  }
+  return runs;
+}
+
+bool IsStudyFolder(const fs::path& folder) {
+  return fs::exists(folder / "plan.csv") && fs::exists(folder / "study.yaml");
+}
+
+StudyFolder ReadStudyFolder(const fs::path& folder) {
+  if (!IsStudyFolder(folder)) {
+    throw InputError(folder.string(), 0, "", "has no plan.csv; expected the folder of duet study");
+  }
+  StudyFolder study;
+  study.path = folder;
+  study.study = ReadStudyFile(folder / "study.yaml", /*quick=*/false);
+  study.result.name = study.study.name;
+  study.result.question = study.study.question;
+  study.result.runs = ReadPlan(folder);
+  std::optional<RecordVersion> version;
+  for (StudyRun& run : study.result.runs) {
+    const bool there = ReadRecordOf(folder, &version, &run);
+    study.record_of_run.push_back(there ? RecordFolderOf(folder, run.id) : fs::path());
+  }
+  AddFoot(study, &study.result.foot);
+  return study;
+}
+
+StudyResult ReadStudy(const fs::path& folder) { return ReadStudyFolder(folder).result; }
+
+std::string PlanCsv(const StudyPlan& plan) {
+  std::string text = kPlanHeader;
+  for (const PlannedRun& run : plan.runs) {
+    const StudyFile& study = plan.study;
+    text += run.id + "," + plan.InputOf(run).id + "," + plan.StreamOf(run).name + "," +
+            run.estimator + "," + study.settings[static_cast<std::size_t>(run.setting)].name + "," +
+            study.perturbations[static_cast<std::size_t>(run.perturbation)].name + "," +
+            std::to_string(run.seed) + "\n";
+  }
+  return text;
+}
+
+std::string RunsCsv(const StudyResult& result) {
+  const std::vector<std::string> columns = MetricColumns(result);
+  std::string text = "id,stream,estimator,setting,perturbation,seed,failed,reason";
+  for (const std::string& column : columns) text += "," + column;
+  text += "\n";
+  for (const StudyRun& run : result.runs) {
+    text += run.id + "," + run.stream + "," + run.estimator + "," + run.setting + "," +
+            run.perturbation + "," + std::to_string(run.seed) + "," + (run.failed ? "1" : "0") +
+            "," + Quoted(run.reason);
+    for (const std::string& column : columns) {
+      const double* value = FindValue(run, column);
+      text += "," + (value == nullptr ? "" : FormatNumber(*value));
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace duet

@@ -1,0 +1,153 @@
+#include "experiments/study/study_plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+
+#include "common/support/input_error.h"
+#include "experiments/study/study_records.h"
+
+namespace duet {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+std::string WithStream(const std::string& stream, const std::string& rest) {
+  return "study: s\nstreams:\n  - " + stream + "\n" + rest;
+}
+const std::string kRoom = "{name: room, simulate: room_easy, set: {simulation.duration_s: 3}}";
+
+StudyPlan PlanOf(const std::string& yaml) {
+  return MakeStudyPlan(ParseStudyFile(yaml, "folder/s.yaml", false), "");
+}
+
+std::set<std::string> IdsOf(const StudyPlan& plan) {
+  std::set<std::string> ids;
+  for (const PlannedRun& run : plan.runs) ids.insert(run.id);
+  return ids;
+}
+
+TEST(StudyPlanTest, TheGridIsEveryCombination) {
+  const StudyPlan plan = PlanOf(WithStream(
+      kRoom,
+      "settings: [{name: a}, {name: b, set: {msckf.max_clones: 9, window.max_frames: 9}}]\n"
+      "perturbations: [{name: none}, {name: p, set: {shared.pixel_noise_px: 2}}]\n"
+      "seeds: 1..3\n"));
+  EXPECT_EQ(plan.runs.size(), 2U * 2U * 2U * 3U);
+  EXPECT_EQ(IdsOf(plan).size(), plan.runs.size());
+  EXPECT_EQ(plan.streams.size(), 3U);  // one a seed, shared by everything else
+  EXPECT_EQ(plan.Distinct().size(), plan.runs.size());
+  // The first runs open one stream each.
+  std::set<int> opened;
+  for (int i = 0; i < 3; ++i) {
+    opened.insert(plan.runs[static_cast<std::size_t>(plan.Distinct()[static_cast<std::size_t>(i)])]
+                      .planned_stream);
+  }
+  EXPECT_EQ(opened.size(), 3U);
+}
+
+TEST(StudyPlanTest, IdsAreOfWhatDeterminesARunAndNotOfNames) {
+  const StudyPlan one = PlanOf(WithStream(kRoom, "settings: [{name: a}]\nseeds: 1..2\n"));
+  const StudyPlan renamed = PlanOf(
+      "study: other\nquestion: why\nstreams:\n  - {name: hall, simulate: room_easy, set: "
+      "{simulation: {duration_s: 3.0}}}\nsettings: [{name: b, set: {window.max_frames: 11}}]"
+      "\nseeds: 1..2\n");  // what is set is the default
+  EXPECT_EQ(IdsOf(one), IdsOf(renamed));
+  const StudyPlan longer = PlanOf(WithStream(
+      "{name: room, simulate: room_easy, set: {simulation.duration_s: 4}}", "seeds: 1..2\n"));
+  for (const std::string& id : IdsOf(longer)) EXPECT_FALSE(IdsOf(one).contains(id));
+}
+
+TEST(StudyPlanTest, AGrownGridKeepsItsIds) {
+  const StudyPlan small = PlanOf(WithStream(kRoom, "seeds: 1..2\n"));
+  const StudyPlan grown =
+      PlanOf(WithStream(kRoom,
+                        "seeds: 1..4\nsettings: [{name: default}, {name: b, set: "
+                        "{shared.pixel_noise_px: 2}}]\n"));
+  for (const std::string& id : IdsOf(small)) EXPECT_TRUE(IdsOf(grown).contains(id));
+}
+
+TEST(StudyPlanTest, WhatOneEstimatorDoesNotSeeIsNotRunForItAgain) {
+  const StudyPlan plan = PlanOf(
+      WithStream(kRoom, "settings: [{name: a}, {name: b, set: {window.max_iterations: 2}}]\n"));
+  EXPECT_EQ(plan.runs.size(), 4U);
+  EXPECT_EQ(IdsOf(plan).size(), 3U);
+  EXPECT_EQ(plan.Distinct().size(), 3U);
+}
+
+TEST(StudyPlanTest, AJitteredStreamIsOneWorldForAllSeeds) {
+  const StudyPlan plan = PlanOf(WithStream(
+      "{name: chaos, simulate: room_easy, jitter_px: 0.001, simulation_seed: 4}", "seeds: 1..3\n"));
+  EXPECT_EQ(plan.streams.size(), 3U);
+  for (const PlannedRun& run : plan.runs) {
+    EXPECT_EQ(run.draw_seed, 4);  // the start as well
+    EXPECT_EQ(plan.InputOf(run).simulation_seed, 4);
+    EXPECT_EQ(plan.InputOf(run).jitter_seed, run.seed);
+  }
+}
+
+TEST(StudyPlanTest, TheRunsSettingsAreWhatTheFileSays) {
+  const StudyPlan plan = PlanOf(WithStream(
+      "{name: room, simulate: room_easy, set: {simulation.pixel_noise_px: 0.4}}",
+      "set: {msckf.max_clones: 8}\nsettings: [{name: a, set: {msckf.max_clones: 9}}]\nseeds: 6..6"
+      "\n"));
+  ConfigSources sources = SourcesOfRun(plan, plan.runs.front());
+  Configuration configuration;
+  configuration.Read(&sources);
+  EXPECT_EQ(configuration.backends.msckf.max_clones, 9);
+  EXPECT_EQ(configuration.shared.pixel_noise_px, 0.4);  // as the simulator tells it
+  EXPECT_EQ(configuration.shared.calibration.told_errors_seed, 6);
+}
+
+TEST(StudyPlanTest, ThePlansTableReadsBack) {
+  const StudyPlan plan = PlanOf(WithStream(kRoom, "seeds: 1..2\n"));
+  EXPECT_THAT(PlanCsv(plan), HasSubstr(plan.runs[1].id + "," + plan.InputOf(plan.runs[1]).id +
+                                       ",room,msckf,default,none,2\n"));
+}
+
+TEST(StudyPlanTest, TheShippedStudiesAreWhole) {
+  int studies = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(DUET_SOURCE "/configs/studies")) {
+    if (entry.path().filename() == "told_wrong.yaml") continue;           // of duet ablate
+    if (entry.path().filename().string().starts_with("euroc")) continue;  // wants the recordings
+    ++studies;
+    for (const bool quick : {false, true}) {
+      const StudyPlan plan = MakeStudyPlan(ReadStudyFile(entry.path(), quick), "");
+      EXPECT_EQ(plan.study.name + ".yaml", entry.path().filename());
+      EXPECT_FALSE(plan.study.question.empty());
+      EXPECT_FALSE(plan.study.metrics.empty());
+      // As many as two cores do within minutes.
+      EXPECT_LE(plan.Distinct().size(), quick ? 100U : 1000U) << entry.path();
+    }
+  }
+  EXPECT_EQ(studies, 8);
+}
+
+struct BadPlan {
+  std::string yaml;
+  std::string error;
+};
+class BadPlanTest : public testing::TestWithParam<BadPlan> {};
+TEST_P(BadPlanTest, IsRefusedBeforeAnythingRuns) {
+  EXPECT_THAT([] { PlanOf(GetParam().yaml); },
+              ThrowsMessage<InputError>(HasSubstr(GetParam().error)));
+}
+INSTANTIATE_TEST_SUITE_P(
+    All, BadPlanTest,
+    testing::Values(
+        BadPlan{WithStream("{name: a, simulate: room_esay}", ""),
+                "unknown preset 'room_esay'; did you mean 'room_easy'?"},
+        BadPlan{WithStream("{name: a, simulate: room_easy, set: {simulation.duratoin_s: 3}}", ""),
+                "s.yaml:3: simulation.duratoin_s: unknown key; did you mean 'duration_s'?"},
+        BadPlan{WithStream(kRoom, "settings: [{name: a, set: {msckf.max_clone: 9}}]\n"),
+                "s.yaml:4: msckf.max_clone: unknown key; did you mean 'max_clones'?"},
+        BadPlan{WithStream(kRoom, "settings: [{name: a, set: {msckf.max_clones: 1}}]\n"),
+                "expected an integer from 3 to 100"},
+        BadPlan{WithStream("{name: MH, dataset: nowhere/MH_01_easy}", ""),
+                "nowhere/MH_01_easy does not exist; expected a recording (--data"}));
+
+}  // namespace
+}  // namespace duet

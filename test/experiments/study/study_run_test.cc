@@ -1,0 +1,110 @@
+#include "experiments/study/study_run.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "backends/factory.h"
+#include "common/support/input_error.h"
+#include "common/support/text_file.h"
+#include "experiments/simulation/monte_carlo.h"
+#include "experiments/study/record_version.h"
+#include "experiments/study/run_evaluation.h"
+#include "experiments/study/study_records.h"
+#include "experiments/study/study_stream.h"
+
+namespace duet {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr const char* kOneRun =
+    "study: s\nstreams:\n  - name: room\n    simulate: room_easy\n"
+    "    set: {simulation.duration_s: 4, simulation.max_tracks: 40}\n"
+    "set: {evaluation.nees_settle_s: 0}\nestimators: [msckf]\nseeds: 3..3\n"
+    "perturbations: [{name: told wrong, set: {shared.calibration.t_d.state: estimated,"
+    " shared.calibration.told_errors: {t_d_s: 0.01}}}]\n";
+
+class StudyRunTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) / ("study_run_" + std::to_string(getpid()));
+    fs::remove_all(folder_);
+    MakeFolder(folder_);
+    plan_ = MakeStudyPlan(ParseStudyFile(kOneRun, "s.yaml", false), "");
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path folder_;
+  StudyPlan plan_;
+};
+
+double Value(const NamedNumbers& metrics, const std::string& key) {
+  for (const auto& [name, value] : metrics) {
+    if (name == key) return value;
+  }
+  ADD_FAILURE() << "no " << key;
+  return 0.0;
+}
+
+// What goes through files is what goes through memory: the same simulation, start and told
+// calibration for a seed, and the same definitions.
+TEST_F(StudyRunTest, IsTheMonteCarloRunOfItsSeed) {
+  ASSERT_EQ(RunStudyRun(plan_, plan_.runs[0], folder_, ""), kDone);
+  const RunEvaluation evaluation = ReadEvaluation(RecordFolderOf(folder_, plan_.runs[0].id));
+  ASSERT_FALSE(evaluation.failed) << evaluation.reason;
+
+  ConfigSources sources = SourcesOfRun(plan_, plan_.runs[0]);
+  Configuration configuration;
+  configuration.Read(&sources);
+  MonteCarloOptions options;
+  options.simulation = SimulationPreset("room_easy");
+  options.simulation.duration_s = 4.0;
+  options.simulation.max_tracks = 40;
+  options.shared = configuration.shared;
+  options.start = configuration.initialization;
+  options.told_from_priors = false;
+  options.settle_s = 0.0;
+  const MonteCarloRun run = RunOnce(options, 3, [&](const EstimatorSetup& setup) {
+    return MakeEstimator("msckf", setup, configuration.backends);
+  });
+  // The told t_d is off by milliseconds, so that instants lie between rows of the truth: linear
+  // over 5 ms, which is micrometres, against errors of centimetres.
+  EXPECT_NEAR(Value(evaluation.metrics, "rms.position_m"), run.position_rms_m, 2e-5);
+  EXPECT_NEAR(Value(evaluation.metrics, "rms.orientation_deg"), run.orientation_rms_deg, 2e-3);
+  const auto consistency = SummarizeRuns(std::vector<MonteCarloRun>{run}, 0.0);
+  EXPECT_NEAR(Value(evaluation.metrics, "nees.pose"), consistency.blocks[0].mean,
+              0.02 * consistency.blocks[0].mean);
+  EXPECT_NEAR(Value(evaluation.metrics, "calibration.t_d.error"), run.calibration.error()[0], 1e-5);
+  EXPECT_NEAR(Value(evaluation.metrics, "calibration.t_d.sigma"), run.calibration.sigma()[0], 1e-6);
+  EXPECT_NEAR(Value(evaluation.metrics, "nees.calibration"), *run.calibration.Nees(), 0.05);
+}
+
+TEST_F(StudyRunTest, IsThereOnceHoweverOftenItIsRun) {
+  ASSERT_EQ(RunStudyRun(plan_, plan_.runs[0], folder_, "first"), kDone);
+  const fs::path record = RecordFolderOf(folder_, plan_.runs[0].id);
+  const std::string manifest = ReadTextFile(record / "manifest.json");
+  ASSERT_EQ(RunStudyRun(plan_, plan_.runs[0], folder_, "second"), kDone);
+  EXPECT_EQ(ReadTextFile(record / "manifest.json"), manifest);
+  int entries = 0;
+  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder_ / "runs")) ++entries;
+  EXPECT_EQ(entries, 1);
+}
+
+TEST_F(StudyRunTest, ACellWithoutARecordHasFailedAndSaysWhy) {
+  MakeFolder(folder_ / "failures");
+  WriteTextFile(folder_ / "study.yaml", StudyYaml(plan_.study));
+  WriteTextFile(folder_ / "plan.csv", PlanCsv(plan_));
+  StudyResult result = ReadStudy(folder_);
+  ASSERT_EQ(result.runs.size(), 1U);
+  EXPECT_TRUE(result.runs[0].failed);
+  EXPECT_THAT(result.runs[0].reason, HasSubstr("did not run"));
+  WriteTextFile(FailureFile(folder_, plan_.runs[0].id), "its process was ended by signal 9\n");
+  result = ReadStudy(folder_);
+  EXPECT_EQ(result.runs[0].reason, "its process was ended by signal 9");
+  EXPECT_THAT(RunsCsv(result), HasSubstr(",room,msckf,default,told wrong,3,1,its process was"));
+}
+
+}  // namespace
+}  // namespace duet
