@@ -1,7 +1,6 @@
 #include "backends/msckf/feature_update.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "backends/msckf/compression.h"
 #include "backends/msckf/nullspace.h"
@@ -98,9 +97,9 @@ bool FeatureUpdate::LinearizeOne(const FilterState& state, const Candidate& cand
                            rows_.middleRows(candidate.first_row, count));
 }
 
-/// True where the pixels fix the depth, were all else known: the inverse depth is min_depth_sigmas
-/// of its standard deviation (from the pixels' noise alone, H_f whitened) above zero.
-bool FeatureUpdate::HasParallax(const Candidate& candidate) {
+/// True where the pixels fix the depth: the inverse depth is min_depth_sigmas of its standard
+/// deviation (from the pixels' noise alone, H_f whitened) above zero.
+bool FeatureUpdate::HasDepth(const Candidate& candidate) {
   const auto H_f = H_f_.middleRows(candidate.first_row, 2 * candidate.observation_count);
   const Eigen::Matrix3d covariance = (H_f.transpose() * H_f).inverse();
   const double rho = candidate.landmark.z();
@@ -114,54 +113,6 @@ void FeatureUpdate::ProjectOne(const Candidate& candidate) {
   duet::ProjectNullspace(H_f_.middleRows(candidate.first_row, count),
                          rows_.middleRows(candidate.first_row, count),
                          columns_.CloneColumn(candidate.anchor_clone), columns_.width());
-}
-
-/// True where the depth is known with all that it was triangulated with as uncertain as it is: the
-/// row of the third landmark component (ProjectNullspace) tells how the inverse depth follows the
-/// poses and the calibration.
-bool FeatureUpdate::KnowsDepth(const Candidate& candidate) {
-  const int first = columns_.CloneColumn(candidate.anchor_clone);
-  const int width = columns_.width() - first;
-  const auto row = rows_.row(candidate.first_row + 2).segment(first, width);
-  depth_row_.resize(width);
-  depth_row_.noalias() = P_measured_.bottomRightCorner(width, width) * row.transpose();
-  const double diagonal = H_f_(candidate.first_row + 2, 2);
-  const double needed = options_.min_depth_sigmas / diagonal;
-  const double rho = candidate.landmark.z();
-  return rho > 0.0 && rho * rho > needed * needed * (row.dot(depth_row_) + 1.0);
-}
-
-/// Variance [m^2] of the way from the landmark's anchor to where it was seen last, an axis: of the
-/// positions and, as the rig turned, of the lever arm.
-double FeatureUpdate::BaselineVariance(const FilterState& state, const Candidate& candidate) {
-  const int last_clone = ObservationsOf(candidate).back().clone;
-  const int anchor = columns_.CloneColumn(candidate.anchor_clone) + 3;
-  const int last = columns_.CloneColumn(last_clone) + 3;
-  const auto trace = [&](int a, int b) { return P_measured_.block<3, 3>(a, b).trace(); };
-  double sum = trace(anchor, anchor) + trace(last, last) - 2.0 * trace(anchor, last);
-  const int p_CB =
-      columns_.CalibrationColumn(state.layout(), CalibrationBlock::kExtrinsicTranslation, 0);
-  if (p_CB >= 0) {
-    const double angle = state.clones()[candidate.anchor_clone].nav.R_GB.angularDistance(
-        state.clones()[last_clone].nav.R_GB);
-    sum += angle * angle * trace(p_CB, p_CB);
-  }
-  return sum / 3.0;
-}
-
-/// A landmark of unknown depth says where it is not: with rho = 0 its Jacobians hold no wrong
-/// scale, only directions. What is left out, rho times the error of the baseline, is noise then.
-bool FeatureUpdate::TakeAsDirection(const FilterState& state, Candidate* candidate) {
-  candidate->landmark.z() = 0.0;
-  if (!LinearizeOne(state, *candidate)) return false;
-  ProjectOne(*candidate);
-  const double focal_length = state.rig().cameras.front().model.parameters()[0];
-  const double per_metre =
-      options_.unknown_inverse_depth_per_m * focal_length / settings_.pixel_noise_px;
-  const double variance = 1.0 + per_metre * per_metre * BaselineVariance(state, *candidate);
-  rows_.middleRows(candidate->first_row + 3, 2 * candidate->observation_count - 3) /=
-      std::sqrt(variance);
-  return true;
 }
 
 void FeatureUpdate::Triangulate(const FilterState& state, FeatureTracks* tracks,
@@ -192,7 +143,7 @@ void FeatureUpdate::Linearize(const FilterState& state, FeatureTracks* tracks,
     candidate.first_row = row;
     const bool ok = LinearizeOne(state, candidate);
     if (!ok) tracks->Consume(candidate.track);
-    if (!ok || !HasParallax(candidate)) {
+    if (!ok || !HasDepth(candidate)) {
       ++counts->not_triangulated;
       return true;
     }
@@ -236,17 +187,17 @@ bool FeatureUpdate::RemoveOutliers(const FilterState& state, Candidate* candidat
   }
   candidate->observation_count = kept;
   if (TriangulateOne(state, candidate) != TriangulationStatus::kOk ||
-      !LinearizeOne(state, *candidate) || !HasParallax(*candidate)) {
+      !LinearizeOne(state, *candidate) || !HasDepth(*candidate)) {
     return false;
   }
   ProjectOne(*candidate);
-  return KnowsDepth(*candidate) || TakeAsDirection(state, candidate);
+  return true;
 }
 
 void FeatureUpdate::Gate(const FilterState& state, FeatureTracks* tracks, FeatureCounts* counts) {
   const int width = columns_.width();
   const std::span<const int> components = columns_.components();
-  if (!candidates_.empty()) {
+  if (options_.gate && !candidates_.empty()) {
     const Eigen::Ref<const Eigen::MatrixXd> P = state.P();
     P_measured_.resize(width, width);
     for (int j = 0; j < width; ++j) {
@@ -255,10 +206,6 @@ void FeatureUpdate::Gate(const FilterState& state, FeatureTracks* tracks, Featur
   }
   KeepUnless(&candidates_, [&](Candidate& candidate) {
     tracks->Consume(candidate.track);
-    if (!KnowsDepth(candidate) && !TakeAsDirection(state, &candidate)) {
-      ++counts->not_triangulated;
-      return true;
-    }
     bool passes = !options_.gate || PassesGate(candidate);
     if (!passes && options_.remove_outliers) {
       passes = RemoveOutliers(state, &candidate) && PassesGate(candidate);

@@ -42,10 +42,8 @@ class FeatureUpdate {
   /// 6.5.2: three rows a landmark go.
   void ProjectNullspace();
 
-  /// 6.5.3: takes landmarks whose depth the uncertain poses and calibration do not fix for mere
-  /// directions, and refuses landmarks by the chi-squared test; one that fails because of single
-  /// pixels is used without them (MsckfOptions::remove_outliers). Uses up the observations of both
-  /// kinds.
+  /// 6.5.3: refuses landmarks by the chi-squared test; one that fails because of single pixels is
+  /// used without them (MsckfOptions::remove_outliers). Uses up the observations of both kinds.
   void Gate(const FilterState& state, FeatureTracks* tracks, FeatureCounts* counts);
 
   /// 6.30 to 6.32: the measurements that remain, [H | r] of unit noise; no rows where there are
@@ -74,15 +72,11 @@ class FeatureUpdate {
   /// The steps of one landmark. `observations_` and `first_row` are given.
   [[nodiscard]] TriangulationStatus TriangulateOne(const FilterState& state, Candidate* candidate);
   [[nodiscard]] bool LinearizeOne(const FilterState& state, const Candidate& candidate);
-  [[nodiscard]] bool HasParallax(const Candidate& candidate);
+  [[nodiscard]] bool HasDepth(const Candidate& candidate);
   void ProjectOne(const Candidate& candidate);
-  [[nodiscard]] bool KnowsDepth(const Candidate& candidate);
-  [[nodiscard]] double BaselineVariance(const FilterState& state, const Candidate& candidate);
-  /// False where the direction is behind a camera.
-  [[nodiscard]] bool TakeAsDirection(const FilterState& state, Candidate* candidate);
   [[nodiscard]] bool PassesGate(const Candidate& candidate);
   /// Leaves out what contradicts the rest and takes the landmark through the steps once more, up to
-  /// the gate. False where that is not possible.
+  /// the projection. False where that is not possible.
   [[nodiscard]] bool RemoveOutliers(const FilterState& state, Candidate* candidate);
 
   MsckfOptions options_;
@@ -98,7 +92,6 @@ class FeatureUpdate {
   LandmarkRows H_f_;
   MeasurementRows rows_;
   std::vector<int> outliers_;   // of one landmark
-  Eigen::VectorXd depth_row_;   // of one landmark
   Eigen::MatrixXd P_measured_;  // covariance of the measured components
   Eigen::MatrixXd stack_;
   MeasurementShape shape_ = MeasurementShape::kFull;

@@ -14,7 +14,6 @@ struct MsckfOptions {
   bool rebase_first_estimates = true;
   int min_observations = 4;
   double min_depth_sigmas = 3.0;
-  double unknown_inverse_depth_per_m = 0.3;
   int max_landmarks_per_update = 30;
   bool gate = true;
   double gate_probability = 0.95;
@@ -54,21 +53,10 @@ struct MsckfOptions {
          .max = 2000});
     v.Field("min_depth_sigmas", &min_depth_sigmas,
             {.doc = "A landmark is used where its inverse depth is so many of its standard "
-                    "deviations above zero, counting the pixels' noise alone; without, hovering "
-                    "makes the filter overconfident (hover, 10 seeds: mean NEES of the pose 25 "
-                    "instead of 6). Where it is not once the poses' and the calibration's errors "
-                    "count too, the landmark is used as a mere direction.",
+                    "deviations away from zero; without, hovering makes the filter overconfident "
+                    "(hover, 10 seeds: mean NEES of the pose 25 instead of 6).",
              .min = 0,
              .max = 100});
-    v.Field("unknown_inverse_depth_per_m", &unknown_inverse_depth_per_m,
-            {.doc = "The inverse depth of a landmark that is used as a direction, 1 sigma about "
-                    "zero: times the uncertainty of the way that it was seen from, it is noise of "
-                    "its pixels. Without such landmarks' treatment pure rotation with an uncertain "
-                    "lever arm makes the filter overconfident (NEES of the calibration 406 instead "
-                    "of 42 of 41).",
-             .unit = "1/m",
-             .min = 0,
-             .max = 10});
     v.Field("gate", &gate, {.doc = "Refuse landmarks by the chi-squared test (6.24 to 6.26)."});
     v.Field("gate_probability", &gate_probability,
             {.doc = "Share of good landmarks that the chi-squared test lets pass.",

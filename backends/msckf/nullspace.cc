@@ -39,10 +39,7 @@ void ProjectNullspace(LandmarkRowsRef H_f, MeasurementRowsRef rows, int first_co
   const auto width = last_column - first_column;
   for (int j = 0; j < 3; ++j) {
     if (beta[j] == 0.0) continue;
-    // s = v' rows, kept in the row that the reflection uses up less beta s. The last reflection's
-    // own row is wanted: the first row, used up, remembers what it was.
-    auto reflected = rows.row(0).segment(first_column, width);
-    if (j == 2) reflected = rows.row(2).segment(first_column, width);
+    // s = v' rows, kept in the row that the reflection uses up less beta s.
     auto head = rows.row(j).segment(first_column, width);
     double head_r = rows(j, residual);
     for (Eigen::Index i = j + 1; i < m; ++i) {
@@ -54,7 +51,6 @@ void ProjectNullspace(LandmarkRowsRef H_f, MeasurementRowsRef rows, int first_co
       rows.row(i).segment(first_column, width) -= factor * head;
       rows(i, residual) -= factor * head_r;
     }
-    if (j == 2) head = reflected - beta[2] * head;
   }
 }
 

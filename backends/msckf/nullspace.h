@@ -16,13 +16,8 @@ using LandmarkRowsRef = Eigen::Ref<LandmarkRows, 0, Eigen::OuterStride<>>;
 ///
 /// Works in place by three Householder reflections, applied to the columns [first_column,
 /// last_column) of `rows` and to its last column (the caller knows that the others are zero).
-/// After it rows 3 .. m-1 of `rows` are the projected measurements, and row 2 (without its
-/// residual) is what they were projected off with the landmark's third component,
-///
-///   H_f(2, 2) f_2 = - row 2 . x + noise of unit variance;
-///
-/// the first two rows are used up, H_f holds its triangle above the reflections. m must be greater
-/// than 3.
+/// After it rows 3 .. m-1 of `rows` are the projected measurements; the first three rows and H_f
+/// are used up (H_f holds its triangle above the reflections). m must be greater than 3.
 void ProjectNullspace(LandmarkRowsRef H_f, MeasurementRowsRef rows, int first_column,
                       int last_column);
 

@@ -180,6 +180,45 @@ TEST(WindowLinearizer, NormalEquationsEqualTheSolversSchurComplement) {
   EXPECT_LT((sigma.asDiagonal() * (covariance - dense) * sigma.asDiagonal()).norm(), 1e-6);
 }
 
+TEST(WindowLinearizer, DepthFollowsPosesAndCalibration) {
+  // The least-squares inverse depth of a landmark, with its pixels' noise and with all else as
+  // uncertain as prior and IMU leave it: from the solver's Jacobian against LinearizeDepth.
+  Fixture f(4, 0.0);
+  f.window.landmarks.resize(1);
+  WindowProblem problem(f.options, f.window.reprojection, f.standstill, f.window.layout);
+  problem.Build(f.window.frames, f.window.rig, f.window.landmarks, f.prior);
+  Eigen::MatrixXd J;
+  (void)Evaluate(&problem.problem(), BlocksInOrder(f.window, &problem.arena()), &J);
+  std::vector<int> pixels;  // rows of the landmark
+  for (int i = 0; i < J.rows(); ++i) {
+    if (J.row(i).tail<3>().squaredNorm() > 0.0) pixels.push_back(i);
+  }
+  const Eigen::MatrixXd J_l = J(pixels, Eigen::all).rightCols<3>();
+  const Eigen::RowVectorXd of_pixels =
+      (J_l.transpose() * J_l).ldlt().solve(Eigen::MatrixXd(J_l.transpose())).row(2);
+  const Eigen::VectorXd to_rho =
+      (of_pixels * J(pixels, Eigen::all).leftCols(J.cols() - 3)).transpose();
+
+  WindowLinearizer linearizer(f.options, f.window.reprojection, f.standstill, f.window.layout);
+  linearizer.SetWindow(f.window.frames, f.window.rig);
+  NormalEquations equations(4, f.window.layout);
+  equations.AddPrior(f.prior);
+  for (int i = 1; i < 4; ++i) linearizer.AddLink(i, &equations);
+  DepthRow depth;
+  linearizer.LinearizeDepth(f.window.landmarks.front(), &depth);
+  const Eigen::MatrixXd H = equations.Take().H;
+  const Eigen::VectorXd scale = H.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> llt(scale.asDiagonal() * H * scale.asDiagonal());
+  const auto variance = [&](const Eigen::VectorXd& row) {
+    const Eigen::VectorXd scaled = scale.cwiseProduct(row);
+    return scaled.dot(llt.solve(scaled));
+  };
+  const double expected = of_pixels.squaredNorm() + variance(to_rho);
+  EXPECT_GT(variance(depth.row), 0.1);  // poses and calibration matter, or nothing is shown
+  EXPECT_NEAR((1.0 + variance(depth.row)) / (depth.diagonal * depth.diagonal), expected,
+              1e-6 * expected);
+}
+
 TEST(WindowProblem, SolverReachesTheNormalEquationsMinimum) {
   // At the solver's minimum the linearizer's gradient is zero: b against its size at the start.
   Fixture f(3, 0.0);
