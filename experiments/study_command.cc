@@ -1,8 +1,15 @@
 #include <gflags/gflags.h>
 
+#include <algorithm>
+#include <cstdio>
+
 #include "common/support/input_error.h"
+#include "common/support/nearest_name.h"
 #include "experiments/commands.h"
 #include "experiments/common_flags.h"
+#include "experiments/figures/figures.h"
+#include "experiments/progress.h"
+#include "experiments/report/report.h"
 #include "experiments/study/study_runner.h"
 
 DECLARE_int32(jobs);
@@ -15,6 +22,38 @@ DEFINE_string(run, "", "Do this run of the plan alone.");
 namespace duet {
 namespace {
 
+namespace fs = std::filesystem;
+
+/// Of a study that names none; those that its records do not hold are left out.
+const std::vector<std::string>& DefaultFigures() {
+  static const std::vector<std::string> names = {"trajectory_top", "rmse_over_runs",
+                                                 "position_error", "nees_over_time"};
+  return names;
+}
+
+void CheckFigures(const StudyFile& study) {
+  std::vector<std::string> known;
+  for (const FigureName& figure : FigureNames()) known.push_back(figure.name);
+  for (const std::string& name : study.figures) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw InputError(study.file, 0, "figures",
+                     "no figure is called '" + name + "'" + DidYouMean(name, known));
+  }
+}
+
+/// Figures and report. One that the records do not hold is a warning: the study is done.
+void MakePictures(const StudyFolder& folder) {
+  const bool asked = !folder.study.figures.empty();
+  for (const std::string& name : asked ? folder.study.figures : DefaultFigures()) {
+    try {
+      (void)MakeFigure(name, {.folders = {folder.path}}, folder.path / "figures");
+    } catch (const InputError& error) {
+      if (asked) PrintWarning("figure " + name + ": " + error.what());
+    }
+  }
+  (void)WriteReport(folder.path, folder.path / "report.html");
+}
+
 int RunStudyCommand(const CommandLine& line) {
   if (line.operands().size() != 1) {
     throw InputError("duet study needs the file of one study; see duet help study");
@@ -26,13 +65,16 @@ int RunStudyCommand(const CommandLine& line) {
                                 .quick = FLAGS_quick,
                                 .jobs = FLAGS_jobs,
                                 .quiet = FLAGS_quiet,
+                                .finish = MakePictures,
                                 .command_line = line.text()};
   const int ways = (FLAGS_dry_run ? 1 : 0) + (FLAGS_plan ? 1 : 0) + (line.Given("run") ? 1 : 0);
   if (ways > 1) throw InputError("--dry-run, --plan and --run do not go together");
-  if (FLAGS_dry_run) return DryRunStudy(choices);
-  if (FLAGS_plan) return PrintStudyPlan(choices);
   if (line.Given("run")) return RunStudyById(choices, FLAGS_run);
-  return RunStudy(choices);
+  const StudyFile study = ReadStudyFile(choices.file, choices.quick);
+  CheckFigures(study);
+  if (FLAGS_dry_run) return DryRunStudy(study, choices);
+  if (FLAGS_plan) return PrintStudyPlan(choices);
+  return RunStudy(study, choices);
 }
 
 }  // namespace
@@ -46,8 +88,9 @@ Command StudyCommand() {
           "stream is simulated or tracked once, every run is a record of its own in --out, named "
           "by the hash of all that determines it. Started again it does what is left; a grid that "
           "has grown keeps what it has. A run that fails is a result with its reason. At the end "
-          "it writes runs.csv and a summary. --plan gives one command a run, for GNU parallel or "
-          "Slurm (experiments/engines/); the same command without --plan then finishes.",
+          "it writes runs.csv, tables, figures and report.html. --plan gives one command a run, "
+          "for GNU parallel or Slurm (experiments/engines/); the same command without --plan then "
+          "finishes.",
       .example = "duet study configs/studies/head_to_head.yaml --quick --jobs 2 --out h2h",
       .flags = {{.name = "out", .value = "DIR", .required = true},
                 {.name = "quick"},

@@ -12,6 +12,7 @@
 #include "experiments/manifest_reader.h"
 #include "experiments/record_reader.h"
 #include "experiments/study/study_records.h"
+#include "experiments/study/study_tables.h"
 
 namespace duet {
 namespace fs = std::filesystem;
@@ -93,17 +94,6 @@ StudyRun RunOfComparison(const std::string& estimator, const std::string& stream
   return run;
 }
 
-StudyTableOptions TableOptionsOf(const StudyFile& study) {
-  StudyTableOptions options;
-  if (!study.metrics.empty()) options.metrics = study.metrics;
-  options.compare = ComparedAxisFromName(StudyCompareName(study.compare));
-  options.baseline = study.baseline;
-  for (const StudyStream& stream : study.streams) {
-    if (stream.jitter_px > 0.0) options.chaos_streams.push_back(stream.name);
-  }
-  return options;
-}
-
 /// "a, b and 3 more"
 std::string NamesOf(const StudyResult& result, const std::string StudyRun::*coordinate) {
   constexpr std::size_t kMostNames = 6;
@@ -148,7 +138,7 @@ Report DescribeStudy(const fs::path& folder) {
   report.title = study.result.name;
   report.question = study.result.question;
   report.foot = study.result.foot;
-  report.tables = MakeStudyTables(study.result, TableOptionsOf(study.study));
+  report.tables = MakeStudyTables(study.result, TableOptionsOf(study));
   report.summary.push_back(GridSentence(study.result));
   for (const StudyTable& table : report.tables) {
     const auto said = std::find(report.summary.begin(), report.summary.end(), table.verdict);

@@ -9,6 +9,7 @@
 #include "common/support/input_error.h"
 #include "common/support/nearest_name.h"
 #include "common/support/text_file.h"
+#include "evaluation/metrics.h"
 
 namespace duet {
 namespace {
@@ -324,10 +325,10 @@ StudyFile StudyOfYaml(YamlNode root, const fs::path& path, bool quick) {
   if (quick && root.kind == YamlNode::Kind::kMap) root = WithQuick(root, study.file);
   // What stands below quick is held to the same rules, also where it is not asked for.
   if (!quick && root.Find("quick") != nullptr) (void)StudyOfYaml(root, path, true);
-  StrictMap map(
-      root, study.file, "",
-      {"study", "question", "streams", "estimators", "config", "set", "settings", "perturbations",
-       "seeds", "baseline", "compare", "metrics", "figures", "measure_time", "quick"});
+  StrictMap map(root, study.file, "",
+                {"study", "question", "streams", "estimators", "config", "set", "settings",
+                 "perturbations", "seeds", "baseline", "compare", "metrics", "figures",
+                 "measure_time", "skip_missing", "published", "quick"});
   study.name = CheckedName(&map, "study");
   study.question = map.TextOr("question", "");
   study.streams = ReadItems<StudyStream>(&map, "streams", study.file, ReadStream);
@@ -354,8 +355,18 @@ StudyFile StudyOfYaml(YamlNode root, const fs::path& path, bool quick) {
   }
   ReadComparison(&map, &study);
   if (map.Find("metrics") != nullptr) study.metrics = map.Texts("metrics", {});
+  for (const std::string& metric : study.metrics) {
+    if (FindMetric(metric)) continue;
+    map.Fail("metrics", "no metric is called '" + metric + "'" + DidYouMean(metric, MetricKeys()));
+  }
   if (map.Find("figures") != nullptr) study.figures = map.Texts("figures", {});
   study.measure_time = map.BoolOr("measure_time", false);
+  study.skip_missing = map.BoolOr("skip_missing", false);
+  if (map.Find("published") != nullptr) {
+    study.published = (path.parent_path() / map.Text("published")).lexically_normal().string();
+    if (!fs::is_directory(study.published))
+      map.Fail("published", study.published + " is no folder");
+  }
   const std::size_t runs = study.streams.size() * study.estimators.size() * study.settings.size() *
                            study.perturbations.size() *
                            static_cast<std::size_t>(study.seeds.last - study.seeds.first + 1);

@@ -67,6 +67,9 @@ struct StudyFile {
   std::vector<std::string> metrics;
   std::vector<std::string> figures;
   bool measure_time = false;
+  /// Recordings that are not there are left out, and said; otherwise they are an error.
+  bool skip_missing = false;
+  std::string published;  ///< folder of published numbers to stand beside; empty: none
 };
 
 /// `quick`: with the keys of the file's `quick` in place of those above it. Strict: every error is

@@ -106,6 +106,7 @@ class Planner {
   }
 
   StudyPlan Make() {
+    if (study().skip_missing) SkipMissing();
     for (std::size_t i = 0; i < study().streams.size(); ++i) AddStream(static_cast<int>(i));
     if (plan_.runs.empty()) throw InputError(study().file, 0, "", "has no run: the grid is empty");
     return std::move(plan_);
@@ -141,12 +142,29 @@ class Planner {
     frames_ = static_cast<int>(options.duration_s * rate_hz) + 1;
   }
 
-  void LookAtRecording(const StudyStream& stream) {
+  [[nodiscard]] fs::path PathOf(const StudyStream& stream) const {
     fs::path path = stream.dataset;
     if (path.is_relative()) {
       path = (data_.empty() ? fs::path(study().file).parent_path() : data_) / path;
     }
-    path = fs::absolute(path).lexically_normal();
+    return fs::absolute(path).lexically_normal();
+  }
+
+  void SkipMissing() {
+    std::vector<StudyStream>& streams = plan_.study.streams;
+    std::erase_if(streams, [&](const StudyStream& stream) {
+      const bool missing = !stream.simulated() && !fs::exists(PathOf(stream));
+      if (missing) LOG(WARNING) << PathOf(stream).string() << " is not there and left out";
+      return missing;
+    });
+    if (streams.empty()) {
+      throw InputError(study().file, 0, "streams",
+                       "none of the recordings is there; --data names the folder that they are in");
+    }
+  }
+
+  void LookAtRecording(const StudyStream& stream) {
+    const fs::path path = PathOf(stream);
     const std::string key = RecordingKey(stream);
     const auto found = known_.find(key);
     plan_.recordings[key] = found != known_.end() && found->second.path == path

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,9 +16,11 @@ namespace duet {
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> StudyTexts(
     const StudyFolder& folder);
 
-/// Writes them and what else is made (figures, report), then the manifest.
-/// Throws InputError and OutputError.
+/// What is made of a study besides, at its end: figures, report.
+using StudyFinish = std::function<void(const StudyFolder& folder)>;
+
+/// Writes the texts, calls `finish`, then writes the manifest. Throws InputError and OutputError.
 void WriteStudyProducts(const std::filesystem::path& folder, bool quick,
-                        const std::string& command_line);
+                        const std::string& command_line, const StudyFinish& finish);
 
 }  // namespace duet

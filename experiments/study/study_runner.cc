@@ -11,13 +11,13 @@
 #include "common/support/text_file.h"
 #include "experiments/command_line.h"
 #include "experiments/interrupt.h"
+#include "experiments/log_capture.h"
 #include "experiments/manifest.h"
 #include "experiments/progress.h"
 #include "experiments/study/child_pool.h"
 #include "experiments/study/record_version.h"
 #include "experiments/study/run_time.h"
 #include "experiments/study/study_lock.h"
-#include "experiments/study/study_products.h"
 #include "experiments/study/study_records.h"
 #include "experiments/study/study_run.h"
 #include "experiments/study/study_stream.h"
@@ -62,6 +62,13 @@ void WritePlan(const StudyPlan& plan, const fs::path& folder) {
   MakeFolder(folder / "streams");
   ReplaceTextFile(folder / "study.yaml", StudyYaml(plan.study));
   ReplaceTextFile(folder / "plan.csv", PlanCsv(plan));
+  if (!plan.study.published.empty()) {
+    MakeFolder(folder / "published");
+    for (const fs::directory_entry& entry : fs::directory_iterator(plan.study.published)) {
+      if (entry.path().extension() != ".csv") continue;
+      ReplaceTextFile(folder / "published" / entry.path().filename(), ReadTextFile(entry.path()));
+    }
+  }
   if (!plan.recordings.empty()) WriteRecordings(plan.recordings, folder);
 }
 
@@ -185,8 +192,10 @@ void RemoveLocksOfStreams(const fs::path& folder) {
   }
 }
 
-StudyPlan PlanOf(const StudyChoices& choices, const StudyRecordings& known = {}) {
-  return MakeStudyPlan(ReadStudyFile(choices.file, choices.quick), choices.data, known);
+/// The log is caught while it lives: no longer than this, since children have one of their own.
+StudyPlan PlanAloud(StudyFile study, const StudyChoices& choices) {
+  const LogCapture log(choices.quiet);
+  return MakeStudyPlan(std::move(study), choices.data);
 }
 
 }  // namespace
@@ -196,7 +205,7 @@ int RunStudy(const StudyChoices& choices) {
 }
 
 int RunStudy(StudyFile study, const StudyChoices& choices) {
-  const StudyPlan plan = MakeStudyPlan(std::move(study), choices.data);
+  const StudyPlan plan = PlanAloud(std::move(study), choices);
   RequireSameStudy(plan.study, choices.out);
   MakeFolder(choices.out);
   const StudyLock lock = LockFolder(choices.out, StudyLock::Kind::kExclusive);
@@ -219,7 +228,7 @@ int RunStudy(StudyFile study, const StudyChoices& choices) {
     return status;
   }
   RemoveLocksOfStreams(choices.out);
-  WriteStudyProducts(choices.out, choices.quick, choices.command_line);
+  WriteStudyProducts(choices.out, choices.quick, choices.command_line, choices.finish);
   if (choices.print_summary) {
     std::fputs(ReadTextFile(choices.out / "summary.txt").c_str(), stdout);
   }
@@ -229,7 +238,8 @@ int RunStudy(StudyFile study, const StudyChoices& choices) {
 int RunStudyById(const StudyChoices& choices, const std::string& id) {
   MakeFolder(choices.out);
   const StudyLock lock = LockFolder(choices.out, StudyLock::Kind::kShared);
-  const StudyPlan plan = PlanOf(choices, ReadRecordings(choices.out));
+  const StudyPlan plan = MakeStudyPlan(ReadStudyFile(choices.file, choices.quick), choices.data,
+                                       ReadRecordings(choices.out));
   RequireSameStudy(plan.study, choices.out);
   if (!fs::exists(choices.out / "plan.csv")) WritePlan(plan, choices.out);
   for (const PlannedRun& run : plan.runs) {
@@ -244,7 +254,7 @@ int DryRunStudy(const StudyChoices& choices) {
 }
 
 int DryRunStudy(StudyFile study, const StudyChoices& choices) {
-  const StudyPlan plan = MakeStudyPlan(std::move(study), choices.data);
+  const StudyPlan plan = PlanAloud(std::move(study), choices);
   RequireSameStudy(plan.study, choices.out);
   const std::vector<int> left = RunsLeft(plan, choices.out);
   const std::size_t all = plan.Distinct().size();
@@ -270,7 +280,7 @@ int DryRunStudy(StudyFile study, const StudyChoices& choices) {
 }
 
 int PrintStudyPlan(const StudyChoices& choices) {
-  const StudyPlan plan = PlanOf(choices);
+  const StudyPlan plan = PlanAloud(ReadStudyFile(choices.file, choices.quick), choices);
   RequireSameStudy(plan.study, choices.out);
   MakeFolder(choices.out);
   {

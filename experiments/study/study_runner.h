@@ -6,6 +6,7 @@
 
 #include "experiments/exit_status.h"
 #include "experiments/study/study_plan.h"
+#include "experiments/study/study_products.h"
 
 namespace duet {
 
@@ -16,8 +17,9 @@ struct StudyChoices {
   bool quick = false;
   int jobs = 1;
   bool quiet = false;
-  bool print_summary = true;  ///< on stdout, at the end
-  std::string command_line;   ///< for the manifests
+  bool print_summary = true;     ///< on stdout, at the end
+  StudyFinish finish = nullptr;  ///< figures and report
+  std::string command_line;      ///< for the manifests
 };
 
 /// Runs what the study's folder lacks, each run in a process of its own, then writes runs.csv,
