@@ -129,7 +129,7 @@ Figure RmseOverRunsFigure(const FigureInput& input) {
   }
   figure.panels = {position, orientation};
   figure.notes.push_back("Position after position and yaw, orientation after a yaw of its own.");
-  if (failed > 0) figure.notes.push_back(std::to_string(failed) + " runs failed: gaps.");
+  if (failed > 0) figure.notes.push_back(CountOfRuns(failed) + " failed: gaps.");
   return figure;
 }
 

@@ -97,6 +97,46 @@ bool BeforeInGrid(const FigureRun& a, const FigureRun& b) {
   return key(a) < key(b);
 }
 
+// The cells of a study's grid, by its plan.csv where it has one, else (a folder made by hand) by
+// what its records say.
+std::vector<FigureRun> StudyRuns(const fs::path& folder) {
+  std::vector<FigureRun> runs;
+  const fs::path plan = folder / "plan.csv";
+  if (!fs::exists(plan)) {
+    for (const fs::path& record : FoldersIn(folder / "runs")) runs.push_back(ReadRun(record));
+    std::stable_sort(runs.begin(), runs.end(), BeforeInGrid);
+    return runs;
+  }
+  const std::string csv = ReadTextFile(plan);
+  CsvReader reader(csv, plan,
+                   {{"id", "stream_id", "stream", "estimator", "setting", "perturbation", "seed"}});
+  while (reader.Next()) {
+    const fs::path record = folder / "runs" / std::string(reader.Text(0));
+    if (IsRun(record)) {
+      runs.push_back(ReadRun(record));
+      continue;
+    }
+    FigureRun run{.folder = {}, .study = folder, .where = {}, .label = {}};
+    StudyRun& where = run.where;
+    where.id = reader.Text(0);
+    where.stream_id = reader.Text(1);
+    where.stream = reader.Text(2);
+    where.estimator = reader.Text(3);
+    where.setting = reader.Text(4);
+    where.perturbation = reader.Text(5);
+    where.seed = static_cast<int>(reader.Unsigned(6));
+    where.failed = true;
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
+const FigureRun& FirstWithRecord(const std::vector<FigureRun>& runs) {
+  const auto found =
+      std::find_if(runs.begin(), runs.end(), [](const FigureRun& run) { return run.has_record(); });
+  return found == runs.end() ? runs.front() : *found;
+}
+
 void LabelRuns(std::vector<FigureRun>* runs) {
   std::set<std::string> streams, settings, perturbations;
   std::set<int> seeds;
@@ -170,17 +210,21 @@ std::vector<FigureRun> FindRuns(const std::vector<fs::path>& folders) {
       runs.back().folder = folder;
       continue;
     }
-    const bool study = fs::is_directory(folder / "runs");
     std::vector<FigureRun> found;
-    for (const fs::path& record : FoldersIn(study ? folder / "runs" : folder)) {
-      found.push_back(ReadRun(record));
+    if (fs::is_directory(folder / "runs")) {
+      found = StudyRuns(folder);
+      if (std::none_of(found.begin(), found.end(),
+                       [](const FigureRun& run) { return run.has_record(); })) {
+        found.clear();
+      }
+    } else {
+      for (const fs::path& record : FoldersIn(folder)) found.push_back(ReadRun(record));
     }
     if (found.empty()) {
       throw InputError(folder, 0, "",
                        "has no run record; expected the folder of a study (runs/<id>), of duet "
                        "compare or of duet run");
     }
-    if (study) std::stable_sort(found.begin(), found.end(), BeforeInGrid);
     runs.insert(runs.end(), found.begin(), found.end());
   }
   if (runs.empty()) {
@@ -194,8 +238,9 @@ std::vector<FigureRun> FindRuns(const std::vector<fs::path>& folders) {
 
 std::vector<FigureRun> ExampleRuns(const std::vector<FigureRun>& runs) {
   std::vector<FigureRun> examples;
-  const FigureRun& first = runs.front();
+  const FigureRun& first = FirstWithRecord(runs);
   for (const FigureRun& run : runs) {
+    if (!run.has_record()) continue;
     const bool same = run.study.empty() ? run.where.stream == first.where.stream
                                         : run.where.stream == first.where.stream &&
                                               run.where.setting == first.where.setting &&
@@ -211,7 +256,7 @@ std::vector<FigureRun> ExampleRuns(const std::vector<FigureRun>& runs) {
 
 std::vector<FigureRun> RunsOfFirstGroup(const std::vector<FigureRun>& runs) {
   std::vector<FigureRun> group;
-  const StudyRun& first = runs.front().where;
+  const StudyRun& first = FirstWithRecord(runs).where;
   const bool plain = runs.front().study.empty();
   for (const FigureRun& run : runs) {
     if (plain || (run.where.stream == first.stream && run.where.setting == first.setting &&
@@ -430,7 +475,12 @@ RunRmse RmseOf(const FigureRun& run) {
   return rmse;
 }
 
+std::string CountOfRuns(int count) {
+  return std::to_string(count) + (count == 1 ? " run" : " runs");
+}
+
 std::string DescribeSource(const FigureRun& run) {
+  if (!run.has_record()) return "runs/" + run.where.id + " (" + run.label + "): no record";
   const nlohmann::ordered_json manifest = ReadJsonFile(run.folder / "manifest.json");
   std::string text =
       run.study.empty() ? run.folder.lexically_normal().string() : "runs/" + run.where.id;

@@ -20,11 +20,14 @@ namespace duet {
 
 /// One run record that a figure may be made from.
 struct FigureRun {
-  std::filesystem::path folder;  ///< of the record
-  std::filesystem::path study;   ///< the folder of the study that it is of; empty: none
-  StudyRun where;                ///< metrics are not filled in; plain records: docs/figures.md
+  /// Of the record; empty for a cell of a study's grid that has left none (it counts as failed).
+  std::filesystem::path folder;
+  std::filesystem::path study;  ///< the folder of the study that it is of; empty: none
+  StudyRun where;               ///< metrics are not filled in; plain records: docs/figures.md
   /// For legends: the estimator, and every further coordinate in which the runs found differ.
   std::string label;
+
+  [[nodiscard]] bool has_record() const { return !folder.empty(); }
 };
 
 /// The run records in folders that may be studies (runs/<id>), of `duet compare` (one folder an
@@ -33,8 +36,8 @@ struct FigureRun {
 [[nodiscard]] std::vector<FigureRun> FindRuns(const std::vector<std::filesystem::path>& folders);
 
 /// What a figure over time shows of many: the runs on the same stream, setting, perturbation and
-/// seed as the first; of plain records those on the first one's recording. Runs that failed are in
-/// it as far as they went. At most six.
+/// seed as the first that has a record; of plain records those on the first one's recording. Runs
+/// that failed are in it as far as they went. At most six.
 [[nodiscard]] std::vector<FigureRun> ExampleRuns(const std::vector<FigureRun>& runs);
 
 /// The runs that are on the first one's stream, setting and perturbation, whatever their seed.
@@ -99,6 +102,9 @@ struct RunRmse {
   double orientation_deg = std::nan("");
 };
 [[nodiscard]] RunRmse RmseOf(const FigureRun& run);
+
+/// "1 run", "2 runs".
+[[nodiscard]] std::string CountOfRuns(int count);
 
 /// For the files' comments: path, program's version and commit, tracks.
 [[nodiscard]] std::string DescribeSource(const FigureRun& run);

@@ -35,7 +35,7 @@ Stream StreamOf(const FigureInput& input) {
     stream.recording = LoadRecording(input.folders.front(), options);
     stream.source = input.folders.front().string();
   } else {
-    const std::vector<FigureRun> runs = FindRuns(input.folders);
+    const std::vector<FigureRun> runs = ExampleRuns(FindRuns(input.folders));
     stream.recording = RecordingOf(runs.front());
     stream.source = DescribeSource(runs.front());
   }

@@ -71,7 +71,7 @@ Recording ImuRecordingOf(const FigureInput& input, std::string* source) {
     *source = dataset.string() + " (" + recording.fingerprint.substr(0, 16) + ")";
     return recording;
   }
-  const std::vector<FigureRun> runs = FindRuns(input.folders);
+  const std::vector<FigureRun> runs = ExampleRuns(FindRuns(input.folders));
   *source = DescribeSource(runs.front());
   return RecordingOf(runs.front());
 }
@@ -222,7 +222,7 @@ Figure Thesis54Figure(const FigureInput& input) {
   Figure figure;
   figure.sources = {"an example's times"};
   if (!input.folders.empty()) {  // of a run: its last estimates, where it has some, else as told
-    const std::vector<FigureRun> runs = FindRuns(input.folders);
+    const std::vector<FigureRun> runs = ExampleRuns(FindRuns(input.folders));
     const Recording recording = RecordingOf(runs.front());
     const RecordTable states = ReadRecordTable(runs.front().folder / "states.csv");
     const std::vector<Timestamp> stamps = recording.FrameStamps();

@@ -8,6 +8,7 @@
 #include "common/support/input_error.h"
 #include "common/support/text_file.h"
 #include "evaluation/chi_squared.h"
+#include "experiments/figures/figure_makers.h"
 #include "test/experiments/figures/test_records.h"
 
 namespace duet {
@@ -83,6 +84,26 @@ TEST(Figures, OfAStudyOneExampleIsShownOverTimeAndAllRunsInStatistics) {
   EXPECT_NEAR(nees.Column("band of 3 runs: position NEES [-] from").front(), band.low, 1e-12);
   EXPECT_NEAR(nees.Column("band of 3 runs: position NEES [-] to").front(), band.high, 1e-12);
   EXPECT_EQ(nees.comments.size(), 1u + 6 + 1);  // all six records
+}
+
+// The order of the grid, and cells that left no record, are in plan.csv.
+TEST(Figures, OfAPlanTheFirstCellIsTheExampleAndCellsWithoutRecordHaveFailed) {
+  const FiguresFolder folder;
+  WriteStudy(folder / "study");
+  WriteTextFile(folder / "study/plan.csv",
+                "#id,stream_id,stream,estimator,setting,perturbation,seed\n"
+                "lost,s,room,msckf,default,none,7\n"
+                "msckf3,s,room,msckf,default,none,3\n"
+                "window3,s,room,window,default,none,3\n"
+                "msckf1,s,room,msckf,default,none,1\n");
+  const FigureInput input{.folders = {folder / "study"}};
+  const Figure errors = ComposeFigure("position_error", input);
+  EXPECT_THAT(errors.notes.back(), HasSubstr("One example of 4 runs: room, seed 3"));
+  EXPECT_EQ(errors.sources.size(), 2u);
+  const Figure rmse = ComposeFigure("rmse_over_runs", input);
+  EXPECT_THAT(rmse.notes.back(), HasSubstr("1 run failed"));
+  EXPECT_THAT(rmse.sources.front(), HasSubstr("no record"));
+  EXPECT_THAT(ComposeFigure("nees_over_time", input).notes.back(), HasSubstr("1 run failed"));
 }
 
 TEST(Figures, RmseIsTheStudysOwnWhereItHasBeenEvaluated) {
