@@ -12,6 +12,8 @@ duet_packages=(
   gnuplot-nox fonts-liberation
 )
 duet_test_packages=(libgtest-dev libgmock-dev libbenchmark-dev)
+# What tests of figures and tables look at them with; where it is missing they are skipped, loudly.
+duet_paper_packages=(poppler-utils texlive-latex-base texlive-pictures)
 
 # Installs what is missing of the packages named; says so, and how, where it may not.
 duet_install_packages() {

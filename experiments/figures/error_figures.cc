@@ -20,7 +20,7 @@ Figure ErrorFigure(const FigureInput& input, bool position) {
     Panel panel{.x = {.label = "time after the first frame [s]"},
                 .y = {.label = std::string(position ? "position error " : "orientation error ") +
                                kAxisNames[axis] + (position ? " [m]" : " [deg]")},
-                .height_mm = 27.0,
+                .height_mm = 29.0,
                 .share_x = axis < 2};
     panel.series.push_back(LineSeries("zero", "", {.colour = kBlack, .width_pt = 0.4}, {}, {}));
     figure.panels.push_back(std::move(panel));
