@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Builds Duet and runs its tests: ./test.sh [--all]. --all adds the long Monte-Carlo runs.
+# Builds Duet and runs its tests: ./test.sh [--all]. --all adds the long Monte-Carlo runs, and installs
+# what looks at tables, figures and reports (TeX, a browser).
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/cmake/bootstrap.sh"
 
@@ -11,10 +12,11 @@ case "${1:-}" in
 esac
 
 duet_install_packages "${duet_packages[@]}" "${duet_test_packages[@]}"
-duet_install_packages "${duet_tex_packages[@]}" ||
-  echo "duet: LaTeX tables will not be compiled" >&2
-duet_install_packages "${duet_browser_packages[@]}" ||
-  echo "duet: tests of the report's page in a browser will be skipped" >&2
+if [ ${#exclude[@]} -eq 0 ]; then
+  # Without them what looks at LaTeX, fonts and the report's page is skipped, and says so.
+  duet_install_packages "${duet_paper_packages[@]}" "${duet_browser_packages[@]}" ||
+    echo "duet: tests of LaTeX, of fonts or of the report in a browser will be skipped" >&2
+fi
 duet_configure release -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=ON
 echo "duet: building program and tests" >&2
 duet_build release all

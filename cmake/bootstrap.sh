@@ -12,8 +12,8 @@ duet_packages=(
   gnuplot-nox fonts-liberation
 )
 duet_test_packages=(libgtest-dev libgmock-dev libbenchmark-dev)
-# Compiles the LaTeX tables in a test, which is skipped without it, and says so.
-duet_tex_packages=(texlive-latex-base texlive-latex-recommended)
+# What tests of tables and figures look at them with; without it they are skipped, and say so.
+duet_paper_packages=(poppler-utils texlive-latex-base texlive-latex-recommended texlive-pictures)
 # What some tests need besides; without it they are skipped, and say so.
 duet_browser_packages=(chromium)
 command -v node >/dev/null || duet_browser_packages+=(nodejs)

@@ -11,6 +11,7 @@
 #include "experiments/figures/figure_makers.h"
 #include "experiments/figures/figure_runs.h"
 #include "experiments/figures/figure_style.h"
+#include "experiments/figures/run_errors.h"
 
 namespace duet {
 namespace {
@@ -123,6 +124,7 @@ Figure CalibrationFigure(const FigureInput& input) {
     if (table.stamps.empty()) continue;
     start = start == 0 ? table.stamps.front() : std::min(start, table.stamps.front());
   }
+  const std::vector<Look> looks = LooksOf(runs);
   bool truth_known = false;
   for (const std::string& component : components) {
     const Unit unit = UnitOf(component);
@@ -142,7 +144,7 @@ Figure CalibrationFigure(const FigureInput& input) {
         high.push_back(((*values)[i] + 3.0 * (*sigmas)[i]) * unit.factor);
       }
       const std::vector<double> span = {t_s.front(), t_s.back()};
-      const Look look = LookOfEstimator(runs[n].where.estimator, n);
+      const Look look = looks[n];
       Look sigma_look = SigmaLook(look);
       sigma_look.dash = look.dash == kSolid ? kSolid : kShortDashed;
       // The reference is the first run's: the same for all on one stream.

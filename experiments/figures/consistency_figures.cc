@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -7,11 +8,14 @@
 #include "experiments/figures/figure_makers.h"
 #include "experiments/figures/figure_runs.h"
 #include "experiments/figures/figure_style.h"
+#include "experiments/figures/run_errors.h"
 
 namespace duet {
 namespace {
 
 constexpr double kConfidence = 0.95;
+// Where the mean is so many times what is expected, the band would be a line on a linear axis.
+constexpr double kLogarithmicFrom = 8.0;
 
 // Of one estimator: at each frame that all of its runs have, the mean over the runs.
 struct MeanNees {
@@ -56,7 +60,14 @@ Figure NeesOverTimeFigure(const FigureInput& input) {
   figure.sources = DescribeSources(runs);
   const std::vector<std::string> estimators = EstimatorsOf(runs);
   std::map<std::string, std::vector<NeesRun>> nees;
-  for (const FigureRun& run : runs) nees[run.where.estimator].push_back(NeesOf(run));
+  int missing = 0;
+  for (const FigureRun& run : runs) {
+    if (run.where.failed) {
+      ++missing;
+    } else {
+      nees[run.where.estimator].push_back(NeesOf(run));
+    }
+  }
 
   constexpr std::array<NeesBlock, 3> kBlocks = {NeesBlock::kPose, NeesBlock::kOrientation,
                                                 NeesBlock::kPosition};
@@ -67,14 +78,15 @@ Figure NeesOverTimeFigure(const FigureInput& input) {
                 .height_mm = 30.0,
                 .share_x = i + 1 < kBlocks.size()};
     double end_s = 0.0;
+    double highest = 0.0;
     std::vector<int> counts;
     for (std::size_t n = 0; n < estimators.size(); ++n) {
       const MeanNees mean = MeanOverRuns(nees[estimators[n]], kBlocks[i]);
       if (mean.t_s.empty()) continue;
       end_s = std::max(end_s, mean.t_s.back());
+      highest = std::max(highest, *std::max_element(mean.mean.begin(), mean.mean.end()));
       counts.push_back(mean.runs);
-      const std::string legend =
-          estimators[n] + ", " + std::to_string(mean.runs) + (mean.runs == 1 ? " run" : " runs");
+      const std::string legend = estimators[n] + ", " + CountOfRuns(mean.runs);
       panel.series.push_back(LineSeries(estimators[n], legend, LookOfEstimator(estimators[n], n),
                                         mean.t_s, mean.mean));
     }
@@ -84,19 +96,24 @@ Figure NeesOverTimeFigure(const FigureInput& input) {
     // Most often one band: all estimators have as many runs.
     for (const int count : std::set<int>(counts.begin(), counts.end())) {
       const Band band = MeanChiSquaredBand(dof, count, kConfidence);
-      const std::string of = std::to_string(count) + (count == 1 ? " run" : " runs");
-      panel.series.insert(
-          panel.series.begin(),
-          BandSeries("band of " + of, "95 % band of " + of, {.colour = kGrey, .opacity = 0.3},
-                     {0.0, end_s}, {band.low, band.low}, {band.high, band.high}));
+      const std::string of = CountOfRuns(count);
+      Series bars =
+          BarSeries("band of " + of, "95 % band of " + of, {.colour = kGrey, .opacity = 0.3});
+      AddBar(0.0, end_s, band.low, band.high, &bars);
+      panel.series.insert(panel.series.begin(), std::move(bars));
     }
     panel.series.push_back(LineSeries("expected", "expected", {.colour = kBlack, .width_pt = 0.4},
                                       {0.0, end_s}, {1.0 * dof, 1.0 * dof}));
+    if (highest > kLogarithmicFrom * dof) {
+      panel.y.logarithmic = true;
+      panel.y.low = 0.03 * dof;
+    }
     figure.panels.push_back(std::move(panel));
   }
   figure.notes.push_back(
       "Mean over the runs at each frame, without alignment; a consistent estimator is within the "
       "band at 95 % of the frames (which depend on one another).");
+  if (missing > 0) figure.notes.push_back(CountOfRuns(missing) + " failed: left out.");
   return figure;
 }
 

@@ -9,6 +9,7 @@
 #include "experiments/figures/figure_makers.h"
 #include "experiments/figures/figure_runs.h"
 #include "experiments/figures/figure_style.h"
+#include "experiments/figures/run_errors.h"
 #include "experiments/timing_log.h"
 
 namespace duet {
@@ -224,6 +225,7 @@ Figure TimeByStageFigure(const FigureInput& input) {
   std::map<std::string, double> total;
   std::vector<std::string> stages;
   for (const FigureRun& run : runs) {
+    if (!run.has_record()) continue;
     std::vector<double>& frames = frame_ms[run.where.estimator];
     for (const auto& [column, values] : TimingOf(run)) {
       if (column == "estimator") frames.insert(frames.end(), values.begin(), values.end());

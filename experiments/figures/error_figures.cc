@@ -4,6 +4,7 @@
 #include "experiments/figures/figure_makers.h"
 #include "experiments/figures/figure_runs.h"
 #include "experiments/figures/figure_style.h"
+#include "experiments/figures/run_errors.h"
 
 namespace duet {
 namespace {
@@ -20,11 +21,12 @@ Figure ErrorFigure(const FigureInput& input, bool position) {
     Panel panel{.x = {.label = "time after the first frame [s]"},
                 .y = {.label = std::string(position ? "position error " : "orientation error ") +
                                kAxisNames[axis] + (position ? " [m]" : " [deg]")},
-                .height_mm = 27.0,
+                .height_mm = 29.0,
                 .share_x = axis < 2};
     panel.series.push_back(LineSeries("zero", "", {.colour = kBlack, .width_pt = 0.4}, {}, {}));
     figure.panels.push_back(std::move(panel));
   }
+  const std::vector<Look> looks = LooksOf(runs);
   bool aligned = false;
   bool by_first = false;
   double last_s = 0.0;
@@ -34,7 +36,7 @@ Figure ErrorFigure(const FigureInput& input, bool position) {
     aligned = aligned || errors.aligned;
     by_first = by_first || errors.by_first;
     last_s = std::max(last_s, errors.t_s.back());
-    const Look look = LookOfEstimator(runs[n].where.estimator, n);
+    const Look look = looks[n];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::vector<double>& values = position ? errors.p_m[axis] : errors.theta_deg[axis];
       const std::vector<double>& sigma =
@@ -129,7 +131,7 @@ Figure RmseOverRunsFigure(const FigureInput& input) {
   }
   figure.panels = {position, orientation};
   figure.notes.push_back("Position after position and yaw, orientation after a yaw of its own.");
-  if (failed > 0) figure.notes.push_back(std::to_string(failed) + " runs failed: gaps.");
+  if (failed > 0) figure.notes.push_back(CountOfRuns(failed) + " failed: gaps.");
   return figure;
 }
 

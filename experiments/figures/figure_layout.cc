@@ -171,21 +171,29 @@ PlacedAxis RoundAxis(double low, double high, double length_mm, double tick_mm) 
 PlacedAxis RoundLogarithmicAxis(double low, double high, double length_mm, double tick_mm) {
   CHECK(0.0 < low && low < high) << low << " to " << high;
   PlacedAxis axis{.low = low, .high = high, .logarithmic = true, .ticks = {}};
-  const double decades = std::log10(high / low);
-  const double mm_a_decade = length_mm / decades;
-  std::vector<double> factors = {1.0};
-  if (0.3 * mm_a_decade >= tick_mm) factors = {1.0, 2.0, 5.0};
+  const double mm_a_decade = length_mm / std::log10(high / low);
   const int every = std::max(1, static_cast<int>(std::ceil(tick_mm / mm_a_decade)));
-  for (int e = static_cast<int>(std::floor(std::log10(low))) - 1; std::pow(10.0, e) <= high; ++e) {
-    if (e % every != 0) continue;
-    for (const double factor : factors) {
-      const double value = factor * std::pow(10.0, e);
-      if (value < low * (1.0 - 1e-9) || value > high * (1.0 + 1e-9)) continue;
-      char text[32];
-      std::snprintf(text, sizeof(text), e < -4 || e > 4 ? "%.0e" : "%g", value);
-      axis.ticks.emplace_back(value, text);
+  const auto ticks_at = [&](const std::vector<double>& factors) {
+    std::vector<std::pair<double, std::string>> ticks;
+    for (int e = static_cast<int>(std::floor(std::log10(low))) - 1; std::pow(10.0, e) <= high;
+         ++e) {
+      if (e % every != 0) continue;
+      for (const double factor : factors) {
+        const double value = factor * std::pow(10.0, e);
+        if (value < low * (1.0 - 1e-9) || value > high * (1.0 + 1e-9)) continue;
+        char text[32];
+        std::snprintf(text, sizeof(text), e < -4 || e > 4 ? "%.0e" : "%g", value);
+        ticks.emplace_back(value, text);
+      }
     }
+    return ticks;
+  };
+  // The densest of these that has room; a denser one rather than a single tick.
+  axis.ticks = ticks_at({1.0});
+  if (std::log10(2.0) * mm_a_decade >= tick_mm || axis.ticks.size() < 2) {
+    axis.ticks = ticks_at({1.0, 2.0, 5.0});
   }
+  if (axis.ticks.size() < 2) axis.ticks = RoundAxis(low, high, length_mm, 2.0 * tick_mm).ticks;
   return axis;
 }
 
@@ -207,7 +215,7 @@ FigureLayout LayOut(const Figure& figure) {
     y_ranges.push_back(DataRange(panel, false));
     const PlacedAxis y = PlaceAxis(panel.y, y_ranges.back(), panel.height_mm, kTickRoomMm);
     tick_mm = std::max(tick_mm, WidestTick(y));
-    y_labels.push_back(WrapText(panel.y.label, panel.height_mm + 3.0));
+    y_labels.push_back(WrapText(panel.y.label, panel.height_mm + 1.5));
     label_lines = std::max(label_lines, y_labels.back().size());
   }
   const double label_mm = kLineHeightMm * static_cast<double>(label_lines);

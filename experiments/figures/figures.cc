@@ -1,6 +1,7 @@
 #include "experiments/figures/figures.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "common/support/input_error.h"
 #include "common/support/nearest_name.h"
@@ -72,6 +73,17 @@ const std::vector<Maker>& Makers() {
   return makers;
 }
 
+// JSON files are taken as docs/formats.md describes them; one that is not so is bad input.
+Figure Made(const Maker& maker, const FigureInput& input) {
+  try {
+    return maker.make(input);
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(
+        input.folders.empty() ? std::string() : input.folders.front().string(), 0, "",
+        std::string("a JSON file of it is not as docs/formats.md says: ") + error.what());
+  }
+}
+
 void ThinLines(Figure* figure) {
   for (Panel& panel : figure->panels) {
     for (Series& series : panel.series) {
@@ -103,7 +115,7 @@ Figure ComposeFigure(const std::string& name, const FigureInput& input) {
   for (const Maker& maker : Makers()) {
     names.emplace_back(maker.name);
     if (name != maker.name) continue;
-    Figure figure = maker.make(input);
+    Figure figure = Made(maker, input);
     figure.name = name;
     if (figure.title.empty()) figure.title = maker.summary;
     ThinLines(&figure);

@@ -85,26 +85,21 @@ Figure InformationSpectrumFigure(const FigureInput& input) {
               .height_mm = 50.0};
   const bool observability =
       input.folders.size() == 1 && std::filesystem::is_regular_file(input.folders.front());
-  try {
-    if (observability) {
-      AddObservability(input.folders.front(), &panel);
-      figure.sources = {input.folders.front().string() + " (duet observability)"};
-      figure.notes = {
-          "Eigenvalues of the calibration's information matrix at the end, all else eliminated, in "
-          "units of the priors: 1 is nothing learnt."};
-    } else {
-      const std::vector<FigureRun> runs = ExampleRuns(FindRuns(input.folders));
-      for (std::size_t n = 0; n < runs.size(); ++n) {
-        AddRun(runs[n], LookOfEstimator(runs[n].where.estimator, n), &panel);
-      }
-      figure.sources = DescribeSources(runs);
-      figure.notes = {
-          "Eigenvalues of the information matrix of θ, p, v, b_g, b_a at the end, in units of the "
-          "start's standard deviations; under 1: less is known than at the start (yaw and position "
-          "are unobservable)."};
-    }
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(input.folders.front(), 0, "", error.what());
+  if (observability) {
+    AddObservability(input.folders.front(), &panel);
+    figure.sources = {input.folders.front().string() + " (duet observability)"};
+    figure.notes = {
+        "Eigenvalues of the calibration's information matrix at the end, all else eliminated, in "
+        "units of the priors: 1 is nothing learnt."};
+  } else {
+    const std::vector<FigureRun> runs = ExampleRuns(FindRuns(input.folders));
+    const std::vector<Look> looks = LooksOf(runs);
+    for (std::size_t n = 0; n < runs.size(); ++n) AddRun(runs[n], looks[n], &panel);
+    figure.sources = DescribeSources(runs);
+    figure.notes = {
+        "Eigenvalues of the information matrix of θ, p, v, b_g, b_a at the end, in units of the "
+        "start's standard deviations; under 1: less is known than at the start (yaw and position "
+        "are unobservable)."};
   }
   double last = 0.0;
   for (const Series& series : panel.series) {

@@ -170,7 +170,8 @@ class TexWriter {
     AxisOptions("y", panel.y, figure_.panels[index].y.grid);
     text_ +=
         "  axis lines=left, axis line style={-, line width=0.4pt}, grid style={black!15, line "
-        "width=0.3pt},\n  major tick length=1mm, minor tick num=0, tick align=inside,\n"
+        "width=0.3pt},\n  major tick length=1mm, xminorticks=false, yminorticks=false, tick "
+        "align=inside,\n"
         "  scaled ticks=false, unbounded coords=jump, filter discard warning=false,\n"
         "  every axis plot/.append style={forget plot}]\n";
     for (const SeriesColumns& of : columns) {

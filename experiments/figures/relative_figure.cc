@@ -7,6 +7,7 @@
 #include "experiments/figures/figure_makers.h"
 #include "experiments/figures/figure_runs.h"
 #include "experiments/figures/figure_style.h"
+#include "experiments/figures/run_errors.h"
 
 namespace duet {
 namespace {

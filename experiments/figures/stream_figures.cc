@@ -11,6 +11,7 @@
 #include "experiments/figures/figure_makers.h"
 #include "experiments/figures/figure_runs.h"
 #include "experiments/figures/figure_style.h"
+#include "experiments/figures/run_errors.h"
 
 namespace duet {
 namespace {
@@ -35,7 +36,7 @@ Stream StreamOf(const FigureInput& input) {
     stream.recording = LoadRecording(input.folders.front(), options);
     stream.source = input.folders.front().string();
   } else {
-    const std::vector<FigureRun> runs = FindRuns(input.folders);
+    const std::vector<FigureRun> runs = ExampleRuns(FindRuns(input.folders));
     stream.recording = RecordingOf(runs.front());
     stream.source = DescribeSource(runs.front());
   }

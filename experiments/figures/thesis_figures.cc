@@ -11,6 +11,7 @@
 #include "experiments/figures/figure_makers.h"
 #include "experiments/figures/figure_runs.h"
 #include "experiments/figures/figure_style.h"
+#include "experiments/figures/run_errors.h"
 
 namespace duet {
 namespace {
@@ -71,7 +72,7 @@ Recording ImuRecordingOf(const FigureInput& input, std::string* source) {
     *source = dataset.string() + " (" + recording.fingerprint.substr(0, 16) + ")";
     return recording;
   }
-  const std::vector<FigureRun> runs = FindRuns(input.folders);
+  const std::vector<FigureRun> runs = ExampleRuns(FindRuns(input.folders));
   *source = DescribeSource(runs.front());
   return RecordingOf(runs.front());
 }
@@ -222,7 +223,7 @@ Figure Thesis54Figure(const FigureInput& input) {
   Figure figure;
   figure.sources = {"an example's times"};
   if (!input.folders.empty()) {  // of a run: its last estimates, where it has some, else as told
-    const std::vector<FigureRun> runs = FindRuns(input.folders);
+    const std::vector<FigureRun> runs = ExampleRuns(FindRuns(input.folders));
     const Recording recording = RecordingOf(runs.front());
     const RecordTable states = ReadRecordTable(runs.front().folder / "states.csv");
     const std::vector<Timestamp> stamps = recording.FrameStamps();
@@ -281,6 +282,7 @@ Figure Thesis81Figure(const FigureInput& input) {
   const std::vector<FigureRun> runs = ExampleRuns(FindRuns(input.folders));
   Figure figure;
   figure.sources = DescribeSources(runs);
+  const std::vector<Look> looks = LooksOf(runs);
   Panel position{.x = {.label = "time after the first state [s]"},
                  .y = {.label = "position error [m]", .low = 0.0},
                  .share_x = true};
@@ -295,7 +297,7 @@ Figure Thesis81Figure(const FigureInput& input) {
     for (const PosePair& pair : association.pairs) {
       t_s.push_back(SecondsBetween(association.pairs.front().timestamp, pair.timestamp));
     }
-    const Look look = LookOfEstimator(runs[n].where.estimator, n);
+    const Look look = looks[n];
     Look rms = look;
     rms.width_pt = 0.6;
     rms.dash = kDotted;

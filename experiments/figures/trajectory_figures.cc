@@ -7,6 +7,7 @@
 #include "experiments/figures/figure_makers.h"
 #include "experiments/figures/figure_runs.h"
 #include "experiments/figures/figure_style.h"
+#include "experiments/figures/run_errors.h"
 
 namespace duet {
 namespace {
@@ -55,10 +56,11 @@ struct View {
   bool thesis_colours = false;
 };
 
-Look LookIn(const View& view, const std::string& estimator, std::size_t n) {
-  Look look = LookOfEstimator(estimator, n);
-  if (view.thesis_colours && estimator == "msckf") look.colour = kGreen;
-  if (view.thesis_colours && estimator == "window") look.colour = kOrange;
+// The thesis's colours where each estimator is there once.
+Look LookIn(const View& view, const FigureRun& run, Look look) {
+  const bool own = look.colour == LookOfEstimator(run.where.estimator, 0).colour;
+  if (view.thesis_colours && own && run.where.estimator == "msckf") look.colour = kGreen;
+  if (view.thesis_colours && own && run.where.estimator == "window") look.colour = kOrange;
   return look;
 }
 
@@ -72,7 +74,9 @@ Figure TrajectoryFigure(const FigureInput& input, const View& view) {
   Timestamp end = 0;
   std::vector<StampedPose> truth;
   bool any_by_first = false;
-  for (const FigureRun& run : runs) {
+  const std::vector<Look> looks = LooksOf(runs);
+  for (std::size_t n = 0; n < runs.size(); ++n) {
+    const FigureRun& run = runs[n];
     std::vector<StampedPose> poses = TrajectoryOf(run);
     if (poses.empty()) continue;
     if (truth.empty()) {
@@ -85,8 +89,7 @@ Figure TrajectoryFigure(const FigureInput& input, const View& view) {
     bool by_first = false;
     const Path path = PathOf(Aligned(truth, std::move(poses), view.mode, &by_first));
     any_by_first = any_by_first || by_first;
-    estimates.push_back(LineSeries(run.label, run.label,
-                                   LookIn(view, run.where.estimator, estimates.size()),
+    estimates.push_back(LineSeries(run.label, run.label, LookIn(view, run, looks[n]),
                                    path.along[view.across], path.along[view.up]));
   }
   if (estimates.empty()) {

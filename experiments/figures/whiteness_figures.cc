@@ -7,6 +7,7 @@
 #include "experiments/figures/figure_makers.h"
 #include "experiments/figures/figure_runs.h"
 #include "experiments/figures/figure_style.h"
+#include "experiments/figures/run_errors.h"
 
 namespace duet {
 namespace {
@@ -131,12 +132,11 @@ Figure WhitenessFigure(const FigureInput& input) {
   Figure figure;
   figure.sources = DescribeSources(runs);
   for (const bool position : {false, true}) {
-    Panel panel{
-        .x = {.label = "lag [s]", .low = 0.0},
-        .y = {.label = std::string(position ? "position" : "orientation") + ", autocorrelation [-]",
-              .high = 1.05},
-        .height_mm = 34.0,
-        .share_x = !position};
+    Panel panel{.title = position ? "errors of the position" : "errors of the orientation",
+                .x = {.label = "lag [s]", .low = 0.0},
+                .y = {.label = "autocorrelation [-]", .high = 1.05},
+                .height_mm = 34.0,
+                .share_x = !position};
     double last_s = 0.0;
     for (std::size_t n = 0; n < estimators.size(); ++n) {
       if (!errors.contains(estimators[n])) continue;

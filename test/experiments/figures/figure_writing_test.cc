@@ -54,6 +54,22 @@ TEST(RoundAxis, TicksAreRoundWithinTheEndsAndFarEnoughApart) {
   }
 }
 
+TEST(RoundAxis, LogarithmicTicksAreAtLeastTwoAndFarEnoughApart) {
+  for (const auto& [low, high] : {std::pair{0.004, 0.02}, std::pair{0.0051, 0.0089},
+                                  std::pair{1e-7, 1e5}, std::pair{0.9, 40.0}}) {
+    const PlacedAxis axis = RoundLogarithmicAxis(low, high, 50.0, 6.0);
+    ASSERT_GE(axis.ticks.size(), 2u) << low;
+    for (std::size_t i = 0; i < axis.ticks.size(); ++i) {
+      EXPECT_GE(axis.ticks[i].first, low);
+      EXPECT_LE(axis.ticks[i].first, high);
+      if (i == 0) continue;
+      EXPECT_GE(
+          std::log(axis.ticks[i].first / axis.ticks[i - 1].first) / std::log(high / low) * 50.0,
+          5.0);
+    }
+  }
+}
+
 // Liberation Sans at 8 pt, measured by pdftotext in a figure: 27.56 pt for this word.
 TEST(TextWidth, IsTheFonts) { EXPECT_NEAR(TextWidthMm("position") / kMmPerPt, 27.56, 0.05); }
 

@@ -8,6 +8,7 @@
 #include "common/support/input_error.h"
 #include "common/support/text_file.h"
 #include "evaluation/chi_squared.h"
+#include "experiments/figures/figure_makers.h"
 #include "test/experiments/figures/test_records.h"
 
 namespace duet {
@@ -85,6 +86,44 @@ TEST(Figures, OfAStudyOneExampleIsShownOverTimeAndAllRunsInStatistics) {
   EXPECT_EQ(nees.comments.size(), 1u + 6 + 1);  // all six records
 }
 
+// The order of the grid, and cells that left no record, are in plan.csv.
+TEST(Figures, OfAPlanTheFirstCellIsTheExampleAndCellsWithoutRecordHaveFailed) {
+  const FiguresFolder folder;
+  WriteStudy(folder / "study");
+  WriteTextFile(folder / "study/plan.csv",
+                "#id,stream_id,stream,estimator,setting,perturbation,seed\n"
+                "lost,s,room,msckf,default,none,7\n"
+                "msckf3,s,room,msckf,default,none,3\n"
+                "window3,s,room,window,default,none,3\n"
+                "msckf1,s,room,msckf,default,none,1\n");
+  const FigureInput input{.folders = {folder / "study"}};
+  const Figure errors = ComposeFigure("position_error", input);
+  EXPECT_THAT(errors.notes.back(), HasSubstr("One example of 4 runs: room, seed 3"));
+  EXPECT_EQ(errors.sources.size(), 2u);
+  const Figure rmse = ComposeFigure("rmse_over_runs", input);
+  EXPECT_THAT(rmse.notes.back(), HasSubstr("1 run failed"));
+  EXPECT_THAT(rmse.sources.front(), HasSubstr("no record"));
+  EXPECT_THAT(ComposeFigure("nees_over_time", input).notes.back(), HasSubstr("1 run failed"));
+}
+
+// Of plain records the same estimator twice on one recording: told apart by name and look, and no
+// sample of two.
+TEST(Figures, PlainRunsOfOneEstimatorAreToldApart) {
+  const FiguresFolder folder;
+  WriteTestRecord({}, folder / "short");
+  WriteTestRecord({.error_m = 0.2}, folder / "long");
+  const FigureInput input{.folders = {folder / "short", folder / "long"}};
+  const Figure errors = ComposeFigure("position_error", input);
+  const std::vector<Series>& series = errors.panels[0].series;
+  EXPECT_EQ(series[1].legend, "msckf, short");
+  EXPECT_EQ(series[4].legend, "msckf, long");
+  EXPECT_NE(series[1].look.colour, series[4].look.colour);
+  EXPECT_NE(series[1].look.dash, series[4].look.dash);
+  const Figure nees = ComposeFigure("nees_over_time", input);
+  EXPECT_EQ(nees.sources.size(), 1u);
+  EXPECT_EQ(nees.panels[0].series[1].legend, "msckf, 1 run");
+}
+
 TEST(Figures, RmseIsTheStudysOwnWhereItHasBeenEvaluated) {
   const FiguresFolder folder;
   WriteStudy(folder / "study");
@@ -117,6 +156,11 @@ TEST(Figures, BadInputIsOneLineThatSaysWhatToDo) {
   WriteTextFile(folder / "run/covariance.csv", "#timestamp [ns],size,numbers\n");
   EXPECT_THAT(ErrorOf("position_error", input, folder / "out"),
               HasSubstr("dataset.path: absent/mav0 is not there"));
+  WriteTextFile(
+      folder / "run/manifest.json",
+      "{\"dataset\": {\"path\": \"" + folder.path().string() + "\", \"cameras\": \"0\"}}\n");
+  EXPECT_THAT(ErrorOf("position_error", input, folder / "out"),
+              HasSubstr("is not as docs/formats.md says"));
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));  // nothing half written
 }
 
