@@ -223,7 +223,7 @@ async function withWebGl() {
     writeFileSync(join(folder, 'report_dark.png'), await browser.screenshot());
     await browser.size(420, 900);
     await browser.settle();
-    check(await browser.value('document.documentElement.scrollWidth <= innerWidth'), 'it fits a narrow screen',
+    check(await browser.value('document.documentElement.scrollWidth <= 420'), 'it fits a narrow screen',
           await browser.value('document.documentElement.scrollWidth'));
     check(browser.problems.length === 0, 'the console stays empty', browser.problems);
   } finally {

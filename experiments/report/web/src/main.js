@@ -4,7 +4,7 @@ import {Chooser} from './chooser.js';
 import {differingCoordinates, readData, runName} from './data.js';
 import {button, dropDown, element, labelled} from './dom.js';
 import {fittingMagnification, kMagnifications} from './layout.js';
-import {Plots, readout} from './plots.js';
+import {Plots, readout, swatch} from './plots.js';
 import {Scrubber} from './scrubber.js';
 import {Spread} from './spread.js';
 import {openWebGl, Trajectories} from './scene.js';
@@ -59,7 +59,8 @@ function trajectoriesPart(store, names) {
   }
   bar.append(labelled('3σ ellipsoids', magnification));
   if (!flat) bar.append(element('label', {class: 'field'}, along, 'along the way'));
-  const key = element('p', {class: 'note'}, 'Dashed, in the colour of text: the truth. Strong: up to the scrubber. ',
+  const truth = swatch({color: '#1b1f24', light: '#e8eaed', dash: [5, 3], name: 'short dashes, black or white'});
+  const key = element('p', {class: 'note'}, truth, 'the truth. An estimate is strong up to the scrubber. ',
                       flat ? '' : 'Axes at the estimate: the body, x longest. Drag, wheel or keys move the view.');
   return {part: element('div', {}, bar, host, key), setMagnification};
 }
@@ -98,6 +99,7 @@ function start() {
   const usable = data.runs.filter((run) => run.column);
   if (usable.length === 0) {
     explorer.append(element('p', {class: 'note'}, 'No run of these records has states to show.'));
+    document.documentElement.dataset.ready = 'true';
     return;
   }
   const store = new Store(data);
