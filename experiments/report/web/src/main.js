@@ -61,7 +61,7 @@ function trajectoriesPart(store, names) {
   if (!flat) bar.append(element('label', {class: 'field'}, along, 'along the way'));
   const truth = swatch({color: '#1b1f24', light: '#e8eaed', dash: [5, 3], name: 'short dashes, black or white'});
   const key = element('p', {class: 'note'}, truth, 'the truth. An estimate is strong up to the scrubber. ',
-                      flat ? '' : 'Axes at the estimate: the body, x longest. Drag, wheel or keys move the view.');
+                      flat ? '' : 'Axes at the estimate: the body, x longest. Drag it; after a click on it the wheel and keys move it too.');
   return {part: element('div', {}, bar, host, key), setMagnification};
 }
 
