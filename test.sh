@@ -11,6 +11,8 @@ case "${1:-}" in
 esac
 
 duet_install_packages "${duet_packages[@]}" "${duet_test_packages[@]}"
+duet_install_packages "${duet_tex_packages[@]}" ||
+  echo "duet: LaTeX tables will not be compiled" >&2
 duet_install_packages "${duet_browser_packages[@]}" ||
   echo "duet: tests of the report's page in a browser will be skipped" >&2
 duet_configure release -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=ON

@@ -12,6 +12,8 @@ duet_packages=(
   gnuplot-nox fonts-liberation
 )
 duet_test_packages=(libgtest-dev libgmock-dev libbenchmark-dev)
+# Compiles the LaTeX tables in a test, which is skipped without it, and says so.
+duet_tex_packages=(texlive-latex-base texlive-latex-recommended)
 # What some tests need besides; without it they are skipped, and say so.
 duet_browser_packages=(chromium)
 command -v node >/dev/null || duet_browser_packages+=(nodejs)

@@ -4,18 +4,16 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <tuple>
 
 #include "common/geometry/interpolation.h"
 #include "common/support/input_error.h"
 #include "common/support/logging.h"
+#include "evaluation/definitions/stamp_matching.h"
 #include "evaluation/statistics.h"
 
 namespace duet {
 namespace {
 
-constexpr double kEvoMaxDifferenceS = 0.01;
-constexpr double kRpgMaxDifferenceS = 0.02;
 constexpr double kGapPerMedianStep = 2.5;
 
 using Index = std::ptrdiff_t;
@@ -30,19 +28,6 @@ Index FirstNotBefore(const std::vector<StampedPose>& poses, Timestamp t) {
 bool JumpsBetween(const std::vector<Timestamp>& jumps, Timestamp start, Timestamp end) {
   const auto jump = std::lower_bound(jumps.begin(), jumps.end(), start);
   return jump != jumps.end() && *jump < end;
-}
-
-PosePair MakePair(const StampedPose& truth, const StampedPose& estimate) {
-  return {estimate.timestamp, truth.T_GB, estimate.T_GB};
-}
-
-/// The index of the pose nearest in time, the earlier of two equally near; -1 for no poses.
-Index NearestIndex(const std::vector<StampedPose>& poses, Timestamp t) {
-  if (poses.empty()) return -1;
-  const Index after = FirstNotBefore(poses, t);
-  if (after == static_cast<Index>(poses.size())) return after - 1;
-  if (after == 0) return 0;
-  return t - poses[after - 1].timestamp <= poses[after].timestamp - t ? after - 1 : after;
 }
 
 enum class TruthIs { kKnown, kOutside, kInGap, kAtJump };
@@ -93,45 +78,11 @@ std::vector<Timestamp> AssociateInterpolated(const std::vector<StampedPose>& tru
   return in_gap;
 }
 
-void AssociateLikeEvo(const std::vector<StampedPose>& truth,
-                      const std::vector<StampedPose>& estimate, double max_difference_s,
-                      Association* result) {
-  const bool estimate_longer = estimate.size() > truth.size();
-  const auto& shorter = estimate_longer ? truth : estimate;
-  const auto& longer = estimate_longer ? estimate : truth;
-  for (const StampedPose& pose : shorter) {
-    const Index nearest = NearestIndex(longer, pose.timestamp);
-    if (nearest < 0) return;
-    const StampedPose& partner = longer[nearest];
-    if (std::abs(partner.timestamp - pose.timestamp) > ToNanoseconds(max_difference_s)) continue;
-    result->pairs.push_back(estimate_longer ? MakePair(pose, partner) : MakePair(partner, pose));
-  }
-}
-
-void AssociateLikeRpg(const std::vector<StampedPose>& truth,
-                      const std::vector<StampedPose>& estimate, double max_difference_s,
-                      Association* result) {
-  // (difference, index of the estimate, index of the truth), closest first.
-  std::vector<std::tuple<Timestamp, Index, Index>> candidates;
-  const Timestamp reach = ToNanoseconds(max_difference_s);
-  for (Index i = 0; i < static_cast<Index>(estimate.size()); ++i) {
-    const Timestamp t = estimate[i].timestamp;
-    for (Index k = FirstNotBefore(truth, t - reach); k < static_cast<Index>(truth.size()); ++k) {
-      const Timestamp difference = std::abs(truth[k].timestamp - t);
-      if (truth[k].timestamp > t && difference >= reach) break;
-      if (difference < reach) candidates.emplace_back(difference, i, k);
-    }
-  }
-  std::sort(candidates.begin(), candidates.end());
-  std::vector<Index> partner(estimate.size(), -1);
-  std::vector<bool> taken(truth.size(), false);
-  for (const auto& [difference, i, k] : candidates) {
-    if (partner[i] >= 0 || taken[k]) continue;
-    partner[i] = k;
-    taken[k] = true;
-  }
-  for (Index i = 0; i < static_cast<Index>(estimate.size()); ++i) {
-    if (partner[i] >= 0) result->pairs.push_back(MakePair(truth[partner[i]], estimate[i]));
+void TakePairs(const std::vector<StampedPose>& truth, const std::vector<StampedPose>& estimate,
+               const std::vector<StampMatch>& matches, Association* result) {
+  for (const StampMatch& match : matches) {
+    const StampedPose& pose = estimate[match.estimate];
+    result->pairs.push_back({pose.timestamp, truth[match.truth].T_GB, pose.T_GB});
   }
 }
 
@@ -180,6 +131,8 @@ const char* AssociationModeName(AssociationMode mode) {
       return "evo";
     case AssociationMode::kRpgNearest:
       return "rpg";
+    case AssociationMode::kOvEvalNearest:
+      return "ov_eval";
   }
   return "";
 }
@@ -212,18 +165,18 @@ Association Associate(const std::vector<StampedPose>& truth,
   Association result;
   std::vector<Timestamp> in_gap;
   result.estimate_count = static_cast<int>(estimate.size());
-  const auto limit = [&](double own) {
-    return options.max_nearest_s > 0.0 ? options.max_nearest_s : own;
-  };
   switch (options.mode) {
     case AssociationMode::kInterpolated:
       in_gap = AssociateInterpolated(truth, estimate, options, &result);
       break;
     case AssociationMode::kEvoNearest:
-      AssociateLikeEvo(truth, estimate, limit(kEvoMaxDifferenceS), &result);
+      TakePairs(truth, estimate, MatchLikeEvo(truth, estimate), &result);
       break;
     case AssociationMode::kRpgNearest:
-      AssociateLikeRpg(truth, estimate, limit(kRpgMaxDifferenceS), &result);
+      TakePairs(truth, estimate, MatchLikeRpg(truth, estimate), &result);
+      break;
+    case AssociationMode::kOvEvalNearest:
+      TakePairs(truth, estimate, MatchLikeOvEval(truth, estimate), &result);
       break;
   }
   for (const StampedPose& pose : estimate) {

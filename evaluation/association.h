@@ -20,12 +20,9 @@ struct PosePair {
 /// numbers of other programs, faults included.
 enum class AssociationMode {
   kInterpolated,
-  /// evo's `associate_trajectories`: each pose of the shorter trajectory takes the nearest of the
-  /// longer one (at most 0.01 s), so that two may take the same.
-  kEvoNearest,
-  /// rpg_trajectory_evaluation's `associate`: pairs closest in time first (less than 0.02 s), each
-  /// pose used once, so that a pose beside a gap can be left with a worse partner.
-  kRpgNearest,
+  kEvoNearest,     ///< MatchLikeEvo (definitions/stamp_matching.h)
+  kRpgNearest,     ///< MatchLikeRpg
+  kOvEvalNearest,  ///< MatchLikeOvEval
 };
 [[nodiscard]] const char* AssociationModeName(AssociationMode mode);
 
@@ -34,8 +31,6 @@ struct AssociationOptions {
   /// Truth is not interpolated over more than this. 60 ms passes a truth at 20 Hz and refuses one
   /// that lost a sample.
   double max_truth_gap_s = 0.06;
-  /// Nearest modes: most that the two stamps may differ; 0: the other program's own default.
-  double max_nearest_s = 0.0;
   /// A longer step between estimated poses is a gap, not covered; 0: 2.5 times the estimate's own
   /// median step.
   double max_estimate_gap_s = 0.0;

@@ -63,11 +63,11 @@ double Acceleration(const std::vector<double>& values, const Statistic& statisti
 
 Band BootstrapInterval(std::span<const std::vector<double>> strata, const Statistic& statistic,
                        const BootstrapOptions& options) {
-  CHECK_GT(options.resamples, 0);
+  CHECK_GE(options.resamples, 0);
   CHECK(options.confidence > 0.0 && options.confidence < 1.0);
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> values = Joined(strata);
-  if (values.size() < kMinBootstrapValues) return {kNaN, kNaN};
+  if (options.resamples == 0 || values.size() < kMinBootstrapValues) return {kNaN, kNaN};
   if (std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); })) {
     const double estimate = statistic(values);
     return {estimate, estimate};

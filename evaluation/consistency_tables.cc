@@ -132,7 +132,7 @@ std::string FailureSentence(const StudyGrid& grid, const StudyTableOptions& opti
   if (failed == 0) return "None of " + of_runs + " failed.";
   // Any metric will do: failures are paired before values are looked at.
   StudyTableOptions quick = options;
-  quick.bootstrap_resamples = 1;
+  quick.bootstrap_resamples = 0;
   const MetricComparison comparison = CompareArms(grid, MetricOf("coverage_share"), quick);
   std::vector<double> p_values;
   for (const ArmComparison& arms : comparison.arms) {
@@ -204,14 +204,12 @@ StudyTable NeesTable(const StudyGrid& grid, const std::vector<Metric>& metrics,
     TableCell mean = NumberCell(cell.mean, 2);
     mean.low = cell.mean - cell.standard_error;
     mean.high = cell.mean + cell.standard_error;
-    TableCell p = NumberCell(cell.p_holm, 4);
-    if (cell.p_holm < 0.0001) p.text = "<0.0001";
     table.rows.push_back(
         {.section = "",
          .cells = {TextCell(grid.arms()[cell.arm].name), TextCell(cell.metric.words),
                    NumberCell(cell.runs, 0), NumberCell(cell.dof, 0), std::move(mean),
-                   NumberCell(cell.band.low, 2), NumberCell(cell.band.high, 2), std::move(p),
-                   TextCell(NeesVerdict(cell, options.alpha))}});
+                   NumberCell(cell.band.low, 2), NumberCell(cell.band.high, 2),
+                   PValueCell(cell.p_holm), TextCell(NeesVerdict(cell, options.alpha))}});
   }
   table.verdict = NeesSentence(grid, cells, options.alpha);
   table.foot = {

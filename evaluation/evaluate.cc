@@ -102,11 +102,16 @@ Evaluation Evaluate(const NamedTrajectory& truth, const std::vector<NamedTraject
 
 void RequireOverlap(const Evaluation& evaluation) {
   for (const TrajectoryEvaluation& estimate : evaluation.estimates) {
-    if (!estimate.association.pairs.empty()) continue;
-    throw InputError(estimate.name, 0, "",
-                     "none of its " + std::to_string(estimate.association.estimate_count) +
-                         " poses in the evaluated span has a truth in " + evaluation.truth_name +
-                         ": expected stamps of the same clock and recording");
+    const Association& association = estimate.association;
+    if (!association.pairs.empty()) continue;
+    const std::string of_poses = "none of its " + std::to_string(association.estimate_count) +
+                                 " poses in the evaluated span has a truth in " +
+                                 evaluation.truth_name + ": ";
+    throw InputError(
+        estimate.name, 0, "",
+        of_poses + (association.in_truth_gap > 0
+                        ? "the truth's steps are longer than evaluation.max_truth_gap_s"
+                        : "expected stamps of the same clock and recording"));
   }
 }
 

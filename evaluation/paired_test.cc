@@ -1,5 +1,6 @@
 #include "evaluation/paired_test.h"
 
+#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -32,6 +33,16 @@ double ShownDifference(const PairedRuns& pair, const Metric& metric) {
   const bool raw = metric.better == Better::kLower || metric.better == Better::kHigher ||
                    metric.better == Better::kNeither;
   return raw ? pair.first - pair.second : metric.Score(pair.first) - metric.Score(pair.second);
+}
+
+/// See PairedComparison::detectable; `interval` is symmetric enough for its length to tell the
+/// standard error.
+double DetectableDifference(const Band& interval, double confidence) {
+  const boost::math::normal normal;
+  const double sigmas = 2.0 * boost::math::quantile(normal, 0.5 + 0.5 * confidence);
+  const double standard_error = (interval.high - interval.low) / sigmas;
+  return (boost::math::quantile(normal, 0.975) + boost::math::quantile(normal, 0.8)) *
+         standard_error;
 }
 
 void CountPairs(std::span<const std::vector<PairedRuns>> strata, PairedComparison* comparison) {
@@ -94,10 +105,13 @@ PairedComparison ComparePairs(std::span<const std::vector<PairedRuns>> strata, c
   };
   comparison.difference = estimate(differences);
   comparison.difference_interval = BootstrapInterval(differences, HodgesLehmann, options.bootstrap);
+  comparison.detectable =
+      DetectableDifference(comparison.difference_interval, options.bootstrap.confidence);
   if (comparison.is_ratio) {
     comparison.ratio = std::exp(estimate(logarithms));
     const Band interval = BootstrapInterval(logarithms, HodgesLehmann, options.bootstrap);
     comparison.ratio_interval = {std::exp(interval.low), std::exp(interval.high)};
+    comparison.detectable = std::exp(DetectableDifference(interval, options.bootstrap.confidence));
   }
   return comparison;
 }

@@ -45,6 +45,12 @@ struct PairedComparison {
   double difference;
   Band difference_interval;
 
+  /// The difference that so many pairs that scatter like these show with probability 0.8 at a
+  /// two-sided level of 0.05: of logarithms as a factor (> 1) where `is_ratio`, else in the
+  /// metric's unit. From the interval: the estimate and the test have the same efficiency, so that
+  /// it is (1.96 + 0.84) standard errors of the estimate. NaN without an interval.
+  double detectable;
+
   SignedRank test;
   double failure_p_value = 1.0;  ///< McNemar's, that both fail equally often
   /// Pairs that tell something: the test's count. The smallest p that so many can give is 2^(1-n).

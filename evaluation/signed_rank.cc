@@ -80,26 +80,46 @@ std::size_t CountMeansUpTo(std::span<const double> sorted, double t) {
   return count;
 }
 
-/// The k-th smallest mean, k counted from 1: bisection until the bounds are neighbours.
-double MeanOfRank(std::span<const double> sorted, std::size_t k) {
-  double low = std::nextafter(sorted.front(), -std::numeric_limits<double>::infinity());
-  double high = sorted.back();
-  // Zero first: bisection would come to it through every power of two.
-  constexpr double kTiny = std::numeric_limits<double>::denorm_min();
-  if (low < 0.0 && high > 0.0) {
-    if (CountMeansUpTo(sorted, 0.0) < k) {
-      low = 0.0;
-    } else if (CountMeansUpTo(sorted, -kTiny) < k) {
-      return 0.0;
-    } else {
-      high = -kTiny;
+/// The means in (low, high], sorted.
+std::vector<double> MeansBetween(std::span<const double> sorted, double low, double high) {
+  std::vector<double> means;
+  std::size_t end = sorted.size();    // of the j whose mean with i is at most high
+  std::size_t begin = sorted.size();  // of those whose mean is above low
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    while (end > 0 && 0.5 * (sorted[i] + sorted[end - 1]) > high) --end;
+    while (begin > 0 && 0.5 * (sorted[i] + sorted[begin - 1]) > low) --begin;
+    for (std::size_t j = std::max(i, begin); j < end; ++j) {
+      means.push_back(0.5 * (sorted[i] + sorted[j]));
     }
   }
-  while (true) {
+  std::sort(means.begin(), means.end());
+  return means;
+}
+
+/// The mean of the k-th and the l-th smallest mean, k <= l <= k + 1 counted from 1: bisection until
+/// few are left, without ever holding all n (n + 1) / 2 of them.
+double MeanOfRanks(std::span<const double> sorted, std::size_t k, std::size_t l) {
+  // Fewer than k means are at most `low`, at least l are at most `high`.
+  double low = std::nextafter(sorted.front(), -std::numeric_limits<double>::infinity());
+  double high = sorted.back();
+  std::size_t below = 0;
+  std::size_t up_to = sorted.size() * (sorted.size() + 1) / 2;
+  while (up_to - below > 2 * sorted.size() + 8) {
     const double middle = std::midpoint(low, high);
-    if (!(low < middle && middle < high)) return high;
-    (CountMeansUpTo(sorted, middle) >= k ? high : low) = middle;
+    if (!(low < middle && middle < high)) return high;  // all of these are equal
+    const std::size_t count = CountMeansUpTo(sorted, middle);
+    if (count < k) {
+      low = middle;
+      below = count;
+    } else if (count >= l) {
+      high = middle;
+      up_to = count;
+    } else {
+      break;  // the two are on either side of the middle
+    }
   }
+  const std::vector<double> means = MeansBetween(sorted, low, high);
+  return std::midpoint(means[k - 1 - below], means[l - 1 - below]);
 }
 
 }  // namespace
@@ -137,9 +157,7 @@ double HodgesLehmann(std::span<const double> values) {
   std::sort(sorted.begin(), sorted.end());
   CHECK(std::isfinite(sorted.front()) && std::isfinite(sorted.back()));
   const std::size_t means = sorted.size() * (sorted.size() + 1) / 2;
-  const double upper = MeanOfRank(sorted, means / 2 + 1);
-  if (means % 2 == 1) return upper;
-  return std::midpoint(MeanOfRank(sorted, means / 2), upper);
+  return MeanOfRanks(sorted, (means + 1) / 2, means / 2 + 1);
 }
 
 }  // namespace duet

@@ -9,6 +9,7 @@
 #include "common/support/nearest_name.h"
 #include "common/support/sha256.h"
 #include "evaluation/metrics.h"
+#include "evaluation/published.h"
 #include "evaluation/statistics.h"
 #include "evaluation/study_comparison.h"
 #include "evaluation/study_grid.h"
@@ -22,7 +23,11 @@ namespace {
 constexpr std::size_t kMostWideArms = 3;
 
 std::vector<TableCell> CellsOfArm(const StudyCell& cell, const Metric& metric) {
-  const std::vector<double> values = cell.Values(metric.key);
+  std::vector<double> values = cell.Values(metric.key);
+  // Signed errors that cancel are not accurate.
+  if (metric.better == Better::kNearZero) {
+    for (double& value : values) value = std::abs(value);
+  }
   const ErrorSummary summary = Summarize(values);
   TableCell median = NumberCell(summary.median, metric.decimals);
   if (values.size() > 1) {
@@ -59,9 +64,11 @@ void MarkBest(const Metric& metric, double coverage_tolerance, std::vector<Table
     if (coverages[i] < best_coverage - coverage_tolerance) continue;
     ranked.emplace_back(metric.Score(medians[i]->value), medians[i]);
   }
-  if (with_value < 2) return;
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
+  if (with_value < 2 || ranked.empty()) return;
+  // Nobody is better where all are equal.
+  if (ranked.size() > 1 && ranked.front().first == ranked.back().first) return;
   TableMark mark = TableMark::kBest;
   for (std::size_t i = 0; i < ranked.size() && mark != TableMark::kNone; ++i) {
     if (i > 0 && ranked[i].first > ranked[i - 1].first) {
@@ -163,7 +170,7 @@ StudyTable MetricTable(const StudyGrid& grid, const Metric& metric,
       "failed: of how many runs; coverage: median share of the span; one that covers " +
       Number(options.coverage_tolerance, 2) + " less than another is not marked best");
   if (metric.better == Better::kNearZero) {
-    table.foot.push_back("the median is of the signed error; marks go by its magnitude");
+    table.foot.push_back("the median is of the magnitude of the error");
   }
   return table;
 }
@@ -172,12 +179,6 @@ TableCell EffectCell(double value, const Band& interval, int decimals) {
   TableCell cell = NumberCell(value, decimals);
   cell.low = interval.low;
   cell.high = interval.high;
-  return cell;
-}
-
-TableCell PValueCell(double p) {
-  TableCell cell = NumberCell(p, 4);
-  if (p < 0.0001) cell.text = "<0.0001";
   return cell;
 }
 
@@ -221,6 +222,16 @@ StudyTable PairedTable(const MetricComparison& comparison, const StudyTableOptio
       "failed is left out; exact up to 50 pairs; all streams: these streams, not others like them",
       "p (Holm): corrected over the " + std::to_string(comparison.tests) +
           " tests of this table; better where it is at most " + Number(options.alpha, 2)};
+  const auto few = [](const ComparisonRow& row) {
+    return row.paired.pairs >= kMinBootstrapValues && row.paired.pairs < 20;
+  };
+  if (std::any_of(comparison.arms.begin(), comparison.arms.end(), [&](const ArmComparison& arms) {
+        return std::any_of(arms.rows.begin(), arms.rows.end(), few);
+      })) {
+    table.foot.push_back(
+        "intervals of fewer than 20 pairs are too short: they hold the truth in about 92 of 100 "
+        "cases with 10 pairs, in 88 with 6; the test is exact");
+  }
   for (const ArmComparison& arms : comparison.arms) {
     if (std::isnan(arms.chaos_floor)) continue;
     table.foot.push_back("chaos floor of " + arms.first + " / " + arms.second +
@@ -285,6 +296,12 @@ TableCell NumberCell(double value, int decimals) {
   return cell;
 }
 
+TableCell PValueCell(double p) {
+  TableCell cell = NumberCell(p, 4);
+  if (p < 0.0001) cell.text = "<0.0001";
+  return cell;
+}
+
 bool IsChaosStream(const StudyTableOptions& options, const std::string& stream) {
   return std::find(options.chaos_streams.begin(), options.chaos_streams.end(), stream) !=
          options.chaos_streams.end();
@@ -324,6 +341,12 @@ std::vector<StudyTable> MakeStudyTables(const StudyResult& study,
   }
   if (!nees.empty()) tables.push_back(NeesTable(grid, nees, options));
   tables.push_back(FailureTable(grid, options));
+  for (StudyTable& table : SensitivityTables(grid, options)) tables.push_back(std::move(table));
+  if (options.published != nullptr) {
+    for (StudyTable& table : PublishedTables(grid, *options.published)) {
+      tables.push_back(std::move(table));
+    }
+  }
   const std::vector<std::string> foot = CommonFoot(grid, options);
   for (StudyTable& table : tables) {
     table.foot.insert(table.foot.end(), foot.begin(), foot.end());

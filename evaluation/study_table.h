@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,8 @@ enum class ComparedAxis { kEstimators, kSettings, kPerturbations };
 /// "estimators", "settings", "perturbations"; throws InputError for another name.
 [[nodiscard]] ComparedAxis ComparedAxisFromName(const std::string& name);
 
+struct Published;  // evaluation/published.h
+
 struct StudyTableOptions {
   /// Keys of evaluation/metrics.h, in the order of the tables.
   std::vector<std::string> metrics = {"ate.position_m", "ate.orientation_deg", "coverage_share",
@@ -67,6 +70,8 @@ struct StudyTableOptions {
   /// An estimator that covers less than the other by more than this is not called more accurate.
   double coverage_tolerance = 0.02;
   int bootstrap_resamples = 2000;
+  /// Of published numbers to stand beside (ReadPublished); none where it is not given.
+  std::shared_ptr<const Published> published;
 };
 
 /// Every table of a study, from its records alone:
@@ -77,6 +82,10 @@ struct StudyTableOptions {
 ///                   for each stream and over all of them, p-values corrected by Holm over the
 ///                   table
 ///   nees            NEES with its chi-squared band, where such a metric is asked for
+///   sensitivity     whether the verdict depends on alignment and segment length, where the records
+///                   have more than one measure of an error
+///   published.METRIC, sequences   beside options.published, where streams have their sequences'
+///                   names
 ///   failures        how often each fails, with Wilson's interval, and McNemar's test
 /// Throws InputError for a metric, baseline or chaos stream that there is not, and for a study
 /// without runs.
@@ -90,7 +99,8 @@ struct StudyTableOptions {
 [[nodiscard]] std::string TableCsv(const StudyTable& table);
 /// GitHub's; best bold, second in italics.
 [[nodiscard]] std::string TableMarkdown(const StudyTable& table);
-/// A `table` environment for \input; needs \usepackage{booktabs}. Best bold, second underlined.
+/// A `table` environment for \input; needs \usepackage{booktabs,graphicx}. Best bold, second
+/// underlined; shrunk to the line where it is wider.
 [[nodiscard]] std::string TableLatex(const StudyTable& table);
 
 }  // namespace duet

@@ -13,6 +13,8 @@ namespace duet {
 
 [[nodiscard]] TableCell TextCell(std::string text);
 [[nodiscard]] TableCell NumberCell(double value, int decimals);
+/// Four digits, "<0.0001" below.
+[[nodiscard]] TableCell PValueCell(double p);
 [[nodiscard]] bool IsChaosStream(const StudyTableOptions& options, const std::string& stream);
 
 /// NEES of every stream and arm: the mean over its runs beside the band in which the mean of as
@@ -28,5 +30,10 @@ namespace duet {
 /// arm fails more often than another (McNemar's exact test over all streams, Holm over the pairs of
 /// arms that are compared).
 [[nodiscard]] StudyTable FailureTable(const StudyGrid& grid, const StudyTableOptions& options);
+
+/// Whether the verdict depends on how position and orientation errors are measured: alignments and
+/// lengths of segments, as far as the records have them. None where they have one measure of each.
+[[nodiscard]] std::vector<StudyTable> SensitivityTables(const StudyGrid& grid,
+                                                        const StudyTableOptions& options);
 
 }  // namespace duet

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "evaluation/study_table.h"
@@ -15,6 +16,15 @@ namespace duet {
 
 /// "median [m]"
 [[nodiscard]] std::string ColumnTitle(const TableColumn& column);
+
+/// The title in lines that make the column no wider than its cells where that is possible: broken
+/// between words.
+[[nodiscard]] std::vector<std::string> TitleLines(const StudyTable& table, std::size_t column);
+/// The most lines that a title has.
+[[nodiscard]] std::size_t TitleHeight(const StudyTable& table);
+
+/// Characters of UTF-8 text.
+[[nodiscard]] std::size_t TextWidth(std::string_view text);
 
 /// Columns begin ... end - 1 that stand under one title.
 struct ColumnGroup {

@@ -83,8 +83,20 @@ std::string LatexLabel(std::string label) {
   return label;
 }
 
+/// A number's minus, which is no hyphen.
+std::string WithMinusSigns(const std::string& text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool minus =
+        text[i] == '-' && i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
+    result += minus ? std::string("$-$") : std::string(1, text[i]);
+  }
+  return result;
+}
+
 std::string LatexCell(const TableCell& cell) {
-  const std::string text = LatexText(CellText(cell));
+  const std::string escaped = LatexText(CellText(cell));
+  const std::string text = cell.text.empty() ? WithMinusSigns(escaped) : escaped;
   return cell.mark == TableMark::kBest         ? "\\textbf{" + text + "}"
          : cell.mark == TableMark::kSecondBest ? "\\underline{" + text + "}"
                                                : text;
@@ -95,6 +107,18 @@ std::string MarkdownCell(const TableCell& cell) {
   return cell.mark == TableMark::kBest         ? "**" + text + "**"
          : cell.mark == TableMark::kSecondBest ? "*" + text + "*"
                                                : text;
+}
+
+/// A title of one line, or of several above one another.
+std::string LatexTitle(const StudyTable& table, std::size_t column) {
+  const std::vector<std::string> lines = TitleLines(table, column);
+  if (lines.size() == 1) return LatexText(lines.front());
+  std::string text =
+      std::string("\\begin{tabular}[b]{@{}") + (table.columns[column].is_text ? "l" : "r") + "@{}}";
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    text += (i > 0 ? "\\\\" : "") + LatexText(lines[i]);
+  }
+  return text + "\\end{tabular}";
 }
 
 /// The groups' line: a \multicolumn over each group, a rule below it.
@@ -151,10 +175,12 @@ std::string TableMarkdown(const StudyTable& table) {
 
 std::string TableLatex(const StudyTable& table) {
   std::string text =
-      "% needs \\usepackage{booktabs}\n"
+      "% needs \\usepackage{booktabs,graphicx}\n"
       "\\begin{table}\n\\centering\n\\caption{" +
       LatexText(table.title) + ".}\n\\label{tab:" + LatexLabel(table.name) +
-      "}\n\\small\n\\begin{tabular}{@{}";
+      "}\n\\footnotesize\n\\setlength{\\tabcolsep}{4pt}\n"
+      // Shrunk only where it is wider than the line.
+      "\\sbox0{\\begin{tabular}{@{}";
   for (const TableColumn& column : table.columns) text += column.is_text ? "l" : "r";
   text += "@{}}\n\\toprule\n";
   const std::vector<ColumnGroup> groups = ColumnGroups(table);
@@ -164,7 +190,7 @@ std::string TableLatex(const StudyTable& table) {
     text += " \\\\\n";
   };
   std::vector<std::string> cells;
-  for (const TableColumn& column : table.columns) cells.push_back(LatexText(ColumnTitle(column)));
+  for (std::size_t c = 0; c < table.columns.size(); ++c) cells.push_back(LatexTitle(table, c));
   add_row(cells);
   text += "\\midrule\n";
   bool marked = false;
@@ -184,7 +210,10 @@ std::string TableLatex(const StudyTable& table) {
     }
     add_row(cells);
   }
-  text += "\\bottomrule\n\\end{tabular}\n";
+  text +=
+      "\\bottomrule\n\\end{tabular}}%\n"
+      "\\ifdim\\wd0>\\linewidth\\resizebox{\\linewidth}{!}{\\usebox0}"
+      "\\else\\usebox0\\fi\n";
   std::string foot;
   const auto add_foot = [&](const std::string& line) {
     foot += (foot.empty() ? "" : "\\\\\n") + LatexText(line);

@@ -14,15 +14,8 @@
 namespace duet {
 namespace {
 
-/// Characters of UTF-8 text.
-std::size_t WidthOf(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
-  }));
-}
-
 std::string Padded(const std::string& text, std::size_t width, bool left) {
-  const std::size_t own = WidthOf(text);
+  const std::size_t own = TextWidth(text);
   const std::string blanks(width > own ? width - own : 0, ' ');
   return left ? text + blanks : blanks + text;
 }
@@ -44,7 +37,7 @@ std::string Wrapped(const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find(' ', at), text.size());
     const std::string word = text.substr(at, end - at);
-    if (!line.empty() && line != "  " && WidthOf(line) + WidthOf(word) > kWidth) end_line();
+    if (!line.empty() && line != "  " && TextWidth(line) + TextWidth(word) > kWidth) end_line();
     line += word + " ";
     at = end + 1;
   }
@@ -63,10 +56,15 @@ std::string MarkedText(const TableCell& cell) {
 /// last of them.
 std::vector<std::size_t> ColumnWidths(const StudyTable& table) {
   std::vector<std::size_t> width;
-  for (const TableColumn& column : table.columns) width.push_back(WidthOf(ColumnTitle(column)));
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    width.push_back(0);
+    for (const std::string& line : TitleLines(table, c)) {
+      width[c] = std::max(width[c], TextWidth(line));
+    }
+  }
   for (const TableRow& row : table.rows) {
     for (std::size_t c = 0; c < row.cells.size(); ++c) {
-      width[c] = std::max(width[c], WidthOf(MarkedText(row.cells[c])));
+      width[c] = std::max(width[c], TextWidth(MarkedText(row.cells[c])));
     }
   }
   for (const ColumnGroup& group : ColumnGroups(table)) {
@@ -74,7 +72,7 @@ std::vector<std::size_t> ColumnWidths(const StudyTable& table) {
     for (std::size_t c = group.begin; c < group.end; ++c) {
       total += width[c] + (c > group.begin ? 2 : 0);
     }
-    const std::size_t wanted = WidthOf(group.title);
+    const std::size_t wanted = TextWidth(group.title);
     if (wanted > total) width[group.end - 1] += wanted - total;
   }
   return width;
@@ -114,6 +112,45 @@ std::string ColumnTitle(const TableColumn& column) {
   return column.unit.empty() ? column.title : column.title + " [" + column.unit + "]";
 }
 
+std::size_t TextWidth(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+  }));
+}
+
+std::vector<std::string> TitleLines(const StudyTable& table, std::size_t column) {
+  std::size_t widest = 0;
+  for (const TableRow& row : table.rows) {
+    if (column < row.cells.size()) {
+      widest = std::max(widest, TextWidth(CellText(row.cells[column])));
+    }
+  }
+  std::vector<std::string> lines = {""};
+  const std::string title = ColumnTitle(table.columns[column]);
+  for (std::size_t at = 0; at < title.size();) {
+    const std::size_t end = std::min(title.find(' ', at), title.size());
+    const std::string word = title.substr(at, end - at);
+    std::string& line = lines.back();
+    if (line.empty()) {
+      line = word;
+    } else if (TextWidth(line) + 1 + TextWidth(word) <= widest) {
+      line += " " + word;
+    } else {
+      lines.push_back(word);
+    }
+    at = end + 1;
+  }
+  return lines;
+}
+
+std::size_t TitleHeight(const StudyTable& table) {
+  std::size_t height = 1;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    height = std::max(height, TitleLines(table, c).size());
+  }
+  return height;
+}
+
 std::vector<ColumnGroup> ColumnGroups(const StudyTable& table) {
   std::vector<ColumnGroup> groups;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
@@ -145,14 +182,21 @@ std::string TableText(const StudyTable& table) {
     }
     text += WithoutBlanksAtEnd(line);
   }
-  std::string header;
-  std::size_t total = 0;
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    header += (c > 0 ? "  " : "") +
-              Padded(ColumnTitle(table.columns[c]), width[c], table.columns[c].is_text);
-    total += width[c] + (c > 0 ? 2 : 0);
+  const std::size_t height = TitleHeight(table);
+  for (std::size_t h = 0; h < height; ++h) {
+    std::string header;
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      // The last lines of all titles stand beside one another.
+      const std::vector<std::string> lines = TitleLines(table, c);
+      const std::size_t blank = height - lines.size();
+      header += (c > 0 ? "  " : "") +
+                Padded(h < blank ? "" : lines[h - blank], width[c], table.columns[c].is_text);
+    }
+    text += WithoutBlanksAtEnd(header);
   }
-  text += WithoutBlanksAtEnd(header) + std::string(total, '-') + "\n";
+  std::size_t total = 0;
+  for (std::size_t c = 0; c < width.size(); ++c) total += width[c] + (c > 0 ? 2 : 0);
+  text += std::string(total, '-') + "\n";
   bool marked = false;
   for (const TableRow& row : table.rows) {
     if (!row.section.empty()) {

@@ -57,6 +57,7 @@ std::string SizeText(const MetricComparison& comparison, const ArmComparison& ar
     text = Number(std::abs(sides.difference), decimals) + unit +
            (sides.difference < 0.0 ? " less than " : " more than ") + *sides.other;
     interval = sides.difference_interval;
+    if (sides.difference < 0.0) interval = {-interval.high, -interval.low};
   } else {
     text = "there is no pair of which both ran";
   }
@@ -122,6 +123,15 @@ std::string DecidedClause(const MetricComparison& comparison, const ArmCompariso
          SizeText(comparison, arms, sides) + end;
 }
 
+/// What so many pairs can show, so that "nothing" is read as it is meant.
+std::string DetectableText(const Metric& metric, const PairedComparison& paired) {
+  if (!std::isfinite(paired.detectable) || !(paired.detectable > 0.0)) return "";
+  const std::string size = paired.is_ratio ? Number(100.0 * (paired.detectable - 1.0), 1) + " %"
+                                           : Number(paired.detectable, metric.decimals) +
+                                                 (metric.unit.empty() ? "" : " " + metric.unit);
+  return "; so many pairs show a difference of " + size + " four times in five";
+}
+
 std::string UndecidedClause(const MetricComparison& comparison, const ArmComparison& arms) {
   const Metric& metric = comparison.metric;
   const ComparisonRow& overall = arms.overall();
@@ -159,7 +169,8 @@ std::string UndecidedClause(const MetricComparison& comparison, const ArmCompari
     case Decision::kNoDirection:
       return metric.words + " differs" + between + ": " + size + FewStreamsText(arms);
     default:
-      return "nothing can be said of " + metric.words + between + ": " + size + FailuresText(arms);
+      return "nothing can be said of " + metric.words + between + ": " + size +
+             DetectableText(metric, overall.paired) + FailuresText(arms);
   }
 }
 

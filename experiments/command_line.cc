@@ -28,8 +28,12 @@ std::string GflagsName(std::string name) {
   return name;
 }
 
+std::string VariableOf(const FlagUse& flag) {
+  return flag.variable.empty() ? GflagsName(flag.name) : flag.variable;
+}
+
 gflags::CommandLineFlagInfo InfoOf(const FlagUse& flag) {
-  return gflags::GetCommandLineFlagInfoOrDie(GflagsName(flag.name).c_str());
+  return gflags::GetCommandLineFlagInfoOrDie(VariableOf(flag).c_str());
 }
 
 /// Breaks at spaces; every line after the first is indented.
@@ -147,7 +151,7 @@ class CommandLineParser {
     if (!flag.repeatable && line_.Given(flag.name)) {
       throw InputError("--" + flag.name + " is given more than once");
     }
-    if (gflags::SetCommandLineOption(GflagsName(flag.name).c_str(), value.c_str()).empty()) {
+    if (gflags::SetCommandLineOption(VariableOf(flag).c_str(), value.c_str()).empty()) {
       throw InputError("--" + flag.name + ": '" + value + "' is not " + KindOf(InfoOf(flag).type));
     }
     line_.values_[flag.name].push_back(value);
@@ -180,7 +184,8 @@ std::string CommandHelp(const Command& command) {
     if (flag.required) text += " --" + flag.name + " " + flag.value;
   }
   if (!command.operands.empty()) text += " " + command.operands;
-  text += " [flags]\n\n" + Wrapped(command.description, 0) + "\n\nFlags\n";
+  text += " [flags]\n\n" + Wrapped(command.description, 0) + "\n\n" + command.table +
+          (command.table.empty() ? "Flags\n" : "\nFlags\n");
   for (const FlagUse& flag : command.flags) {
     const gflags::CommandLineFlagInfo info = InfoOf(flag);
     std::string head = "  --" + flag.name + (flag.value.empty() ? "" : " " + flag.value);

@@ -15,6 +15,8 @@ struct FlagUse {
   bool repeatable = false;                ///< every value is kept: CommandLine::All
   std::vector<std::string> choices = {};  ///< the values allowed; empty: any
   std::string without = {};  ///< for the help, where it is not the flag's default: "all cores"
+  /// Its gflags variable, where commands mean different things by one name: "figure_runs".
+  std::string variable = {};
 };
 
 /// A command as it was called: which flags were given. Values are in gflags' variables; those of
@@ -44,7 +46,8 @@ struct Command {
   std::string example;
   std::vector<FlagUse> flags = {};
   std::string operands =
-      {};  ///< what the words that are no flags are: "FILE..."; empty: none taken
+      {};                  ///< what the words that are no flags are: "FILE..."; empty: none taken
+  std::string table = {};  ///< of `duet help NAME` after the description, printed as it is
   int (*run)(const CommandLine& line) = nullptr;
 };
 

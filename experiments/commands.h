@@ -20,5 +20,7 @@ namespace duet {
 [[nodiscard]] Command ReportCommand();
 [[nodiscard]] Command StudyCommand();
 [[nodiscard]] Command VerifyCommand();
+[[nodiscard]] Command TuneCommand();
+[[nodiscard]] Command FigureCommand();
 
 }  // namespace duet

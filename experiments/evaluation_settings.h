@@ -30,9 +30,10 @@ struct EvaluationSettings {
     v.Choice("association", &association,
              {{"interpolated", AssociationMode::kInterpolated},
               {"evo", AssociationMode::kEvoNearest},
-              {"rpg", AssociationMode::kRpgNearest}},
-             {.doc = "How the truth at an estimate's stamp is found: interpolated, or as two other "
-                     "programs pair, to reproduce their numbers."});
+              {"rpg", AssociationMode::kRpgNearest},
+              {"ov_eval", AssociationMode::kOvEvalNearest}},
+             {.doc = "How the truth at an estimate's stamp is found: interpolated, or as three "
+                     "other programs pair. (duet evaluate --definition gives their errors.)"});
     v.Field("max_truth_gap_s", &max_truth_gap_s,
             {.doc = "The truth is not interpolated over more than this.",
              .unit = "s",

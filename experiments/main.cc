@@ -17,11 +17,12 @@ int Fail(ExitStatus status, const char* what) {
 
 int Run(int argc, char** argv) {
   try {
-    return Dispatch({CompareCommand(), TrackCommand(), RunCommand(), EvaluateCommand(),
-                     CheckCommand(), ObservabilityCommand(), AblateCommand(), StudyCommand(),
-                     VerifyCommand(), ReportCommand(), SimulateCommand(), MonteCarloCommand(),
-                     TrackErrorCommand(), AllanCommand(), ConfigCommand()},
-                    argc, argv);
+    return Dispatch(
+        {CompareCommand(), TrackCommand(), RunCommand(), EvaluateCommand(), CheckCommand(),
+         ObservabilityCommand(), AblateCommand(), StudyCommand(), VerifyCommand(), TuneCommand(),
+         FigureCommand(), ReportCommand(), SimulateCommand(), MonteCarloCommand(),
+         TrackErrorCommand(), AllanCommand(), ConfigCommand()},
+        argc, argv);
   } catch (const InputError& error) {
     return Fail(kBadInput, error.what());
   } catch (const OutputError& error) {

@@ -6,6 +6,12 @@
 #include "backends/window/window_problem.h"
 
 namespace duet {
+namespace {
+
+// How far from its pixel a landmark may lie at the first estimates.
+constexpr double kFirstEstimateReach_px = 100.0;
+
+}  // namespace
 
 WindowLinearizer::WindowLinearizer(const WindowOptions& options,
                                    const ReprojectionSetup& reprojection,
@@ -80,10 +86,12 @@ void WindowLinearizer::AddLandmark(const Landmark& landmark, int last_frame,
                               &linear.r)) {
       continue;
     }
-    // Where the first estimates put the point behind the camera, the pixel is left out: anywhere
-    // else it would add information about yaw.
+    // Where the first estimates put the point behind the camera or far from its pixel, the pixel is
+    // left out: Jacobians there say nothing of those here, and any others would add information
+    // about yaw.
     if (!EvaluateReprojection(reprojection_, first_, *frames_, layout_, anchor, o, landmark.value,
-                              &r_first, &linear.J)) {
+                              &r_first, &linear.J) ||
+        r_first.norm() * reprojection_.pixel_noise_px > kFirstEstimateReach_px) {
       continue;
     }
     if (loss_ != nullptr) {

@@ -315,12 +315,15 @@ const char* StudyCompareName(StudyCompare compare) {
 }
 
 StudyFile ParseStudyFile(std::string_view yaml, const fs::path& path, bool quick) {
+  return StudyOfYaml(ParseYaml(yaml, path.string()), path, quick);
+}
+
+StudyFile StudyOfYaml(YamlNode root, const fs::path& path, bool quick) {
   StudyFile study;
   study.file = path.string();
-  YamlNode root = ParseYaml(yaml, study.file);
   if (quick && root.kind == YamlNode::Kind::kMap) root = WithQuick(root, study.file);
   // What stands below quick is held to the same rules, also where it is not asked for.
-  if (!quick && root.Find("quick") != nullptr) (void)ParseStudyFile(yaml, path, true);
+  if (!quick && root.Find("quick") != nullptr) (void)StudyOfYaml(root, path, true);
   StrictMap map(
       root, study.file, "",
       {"study", "question", "streams", "estimators", "config", "set", "settings", "perturbations",

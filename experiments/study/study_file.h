@@ -73,6 +73,8 @@ struct StudyFile {
 /// an InputError with file, line and key. Configurations and recordings are not yet looked at.
 [[nodiscard]] StudyFile ParseStudyFile(std::string_view yaml, const std::filesystem::path& file,
                                        bool quick);
+/// The same from a document that has been read.
+[[nodiscard]] StudyFile StudyOfYaml(YamlNode root, const std::filesystem::path& file, bool quick);
 [[nodiscard]] StudyFile ReadStudyFile(const std::filesystem::path& file, bool quick);
 
 /// The study as a file that says the same, without other files and with nothing left out.

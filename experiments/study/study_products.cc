@@ -1,18 +1,22 @@
 #include "experiments/study/study_products.h"
 
-#include <cstdio>
-
 #include "common/support/text_file.h"
 #include "experiments/manifest.h"
 #include "experiments/study/record_version.h"
+#include "experiments/study/tuning_result.h"
 
 namespace duet {
 
 namespace fs = std::filesystem;
 
 std::vector<std::pair<std::string, std::string>> StudyTexts(const StudyFolder& folder) {
-  return {{"runs.csv", RunsCsv(folder.result)},
-          {"summary.txt", StudySummaryText(folder.result, folder.study.metrics)}};
+  std::vector<std::pair<std::string, std::string>> texts = {
+      {"runs.csv", RunsCsv(folder.result)},
+      {"summary.txt", StudySummaryText(folder.result, folder.study.metrics)}};
+  if (IsTuningFolder(folder.path)) {
+    for (auto& text : TuningTexts(folder)) texts.push_back(std::move(text));
+  }
+  return texts;
 }
 
 void WriteStudyProducts(const fs::path& folder, bool quick, const std::string& command_line) {
@@ -21,7 +25,6 @@ void WriteStudyProducts(const fs::path& folder, bool quick, const std::string& c
     MakeFolder((folder / name).parent_path());
     ReplaceTextFile(folder / name, text);
   }
-  std::fputs(ReadTextFile(folder / "summary.txt").c_str(), stdout);
 
   Manifest manifest = StartManifest(command_line);
   int failed = 0;

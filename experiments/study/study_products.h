@@ -15,7 +15,7 @@ namespace duet {
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> StudyTexts(
     const StudyFolder& folder);
 
-/// Writes them and what else is made (figures, report), then the manifest; prints the summary.
+/// Writes them and what else is made (figures, report), then the manifest.
 /// Throws InputError and OutputError.
 void WriteStudyProducts(const std::filesystem::path& folder, bool quick,
                         const std::string& command_line);

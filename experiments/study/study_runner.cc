@@ -192,7 +192,11 @@ StudyPlan PlanOf(const StudyChoices& choices, const StudyRecordings& known = {})
 }  // namespace
 
 int RunStudy(const StudyChoices& choices) {
-  const StudyPlan plan = PlanOf(choices);
+  return RunStudy(ReadStudyFile(choices.file, choices.quick), choices);
+}
+
+int RunStudy(StudyFile study, const StudyChoices& choices) {
+  const StudyPlan plan = MakeStudyPlan(std::move(study), choices.data);
   RequireSameStudy(plan.study, choices.out);
   MakeFolder(choices.out);
   const StudyLock lock = LockFolder(choices.out, StudyLock::Kind::kExclusive);
@@ -216,6 +220,9 @@ int RunStudy(const StudyChoices& choices) {
   }
   RemoveLocksOfStreams(choices.out);
   WriteStudyProducts(choices.out, choices.quick, choices.command_line);
+  if (choices.print_summary) {
+    std::fputs(ReadTextFile(choices.out / "summary.txt").c_str(), stdout);
+  }
   return execution.died() > 0 ? kInternalError : kDone;
 }
 
@@ -233,7 +240,11 @@ int RunStudyById(const StudyChoices& choices, const std::string& id) {
 }
 
 int DryRunStudy(const StudyChoices& choices) {
-  const StudyPlan plan = PlanOf(choices);
+  return DryRunStudy(ReadStudyFile(choices.file, choices.quick), choices);
+}
+
+int DryRunStudy(StudyFile study, const StudyChoices& choices) {
+  const StudyPlan plan = MakeStudyPlan(std::move(study), choices.data);
   RequireSameStudy(plan.study, choices.out);
   const std::vector<int> left = RunsLeft(plan, choices.out);
   const std::size_t all = plan.Distinct().size();

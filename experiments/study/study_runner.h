@@ -10,13 +10,14 @@
 namespace duet {
 
 struct StudyChoices {
-  std::filesystem::path file;
+  std::filesystem::path file = {};  ///< of --plan and --run; a study at hand needs none
   std::filesystem::path out;
   std::filesystem::path data;  ///< where recordings are; empty: beside the file
   bool quick = false;
   int jobs = 1;
   bool quiet = false;
-  std::string command_line;  ///< for the manifests
+  bool print_summary = true;  ///< on stdout, at the end
+  std::string command_line;   ///< for the manifests
 };
 
 /// Runs what the study's folder lacks, each run in a process of its own, then writes runs.csv,
@@ -25,6 +26,8 @@ struct StudyChoices {
 /// kWritingFailed (what is done stays) or, where a process died, kInternalError. Throws InputError
 /// and OutputError.
 [[nodiscard]] int RunStudy(const StudyChoices& choices);
+/// The same of a study at hand.
+[[nodiscard]] int RunStudy(StudyFile study, const StudyChoices& choices);
 
 /// One run of the plan, by its id, as an engine outside calls it: writes its record and nothing
 /// else.
@@ -32,6 +35,7 @@ struct StudyChoices {
 
 /// How many runs and streams there are, how many are left, and how long they will take.
 [[nodiscard]] int DryRunStudy(const StudyChoices& choices);
+[[nodiscard]] int DryRunStudy(StudyFile study, const StudyChoices& choices);
 
 /// Prepares the folder and prints one command for each run that is left.
 [[nodiscard]] int PrintStudyPlan(const StudyChoices& choices);

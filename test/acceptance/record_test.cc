@@ -253,6 +253,18 @@ TEST_F(SimulatedTest, EvaluateTakesARecordsTrajectory) {
   EXPECT_NEAR(ReadJson(folder_ / "evaluation.json")[truth]["ate"]["position_m"], 0.0, 1e-12);
   EXPECT_EQ(RunDuet({"evaluate", "--groundtruth", truth, "--estimate", folder_ / "none"}).status,
             2);
+  const ProgramResult all =
+      RunDuet({"evaluate", "--groundtruth", truth, "--estimate", folder_ / "run/trajectory.tum",
+               "--definition=all", "--definition=evo:sim3", "--json", folder_ / "all.json"});
+  EXPECT_EQ(all.status, 0) << all.err;
+  EXPECT_THAT(all.out, HasSubstr("Why they differ"));
+  const Json definitions =
+      ReadJson(folder_ / "all.json")[folder_ / "run/trajectory.tum"]["definitions"];
+  EXPECT_EQ(definitions.size(), 4u);
+  EXPECT_GT(definitions["evo:sim3"]["position_m"]["rmse"], 0.0);
+  EXPECT_EQ(
+      RunDuet({"evaluate", "--groundtruth", truth, "--estimate", truth, "--definition=tum"}).status,
+      2);
 }
 
 /// True once a file below `parent` whose path contains `part` has more than `bytes` bytes.

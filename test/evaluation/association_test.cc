@@ -134,20 +134,21 @@ TEST(Association, LikeEvoTwoPosesOfTheShorterMayShareOne) {
   EXPECT_THAT(Milliseconds(b.pairs, false), testing::ElementsAre(10, 10));
 }
 
-TEST(Association, LikeEvoTheBoundIsIncluded) {
-  AssociationOptions options{.mode = AssociationMode::kEvoNearest};
-  EXPECT_EQ(Associate(Line({0, 100, 200}), Line({10}), options).pairs.size(), 1u);
-}
-
 TEST(Association, LikeRpgTheClosestPairsComeFirstAndEachPoseIsUsedOnce) {
   // 12 takes 10 (2 ms apart), so that 7, 3 ms from 10, is left with 0 (7 ms).
   AssociationOptions options{.mode = AssociationMode::kRpgNearest};
   const Association a = Associate(Line({0, 10, 100}), Line({7, 12}), options);
   EXPECT_THAT(Milliseconds(a.pairs, false), testing::ElementsAre(7, 12));
   EXPECT_THAT(Milliseconds(a.pairs, true), testing::ElementsAre(0, 10));
-  // The bound of 20 ms is not included.
-  EXPECT_EQ(Associate(Line({0}), Line({20}), options).pairs.size(), 0u);
-  EXPECT_EQ(Associate(Line({0}), Line({19}), options).pairs.size(), 1u);
+}
+
+TEST(Association, LikeOvEvalTheFirstThatComesNearTakesTheTruth) {
+  AssociationOptions options{.mode = AssociationMode::kOvEvalNearest};
+  const Association a = Associate(Line({100, 200}), Line({85, 95, 181, 201}), options);
+  EXPECT_THAT(Milliseconds(a.pairs, false), testing::ElementsAre(85, 181));
+  EXPECT_THAT(Milliseconds(a.pairs, true), testing::ElementsAre(100, 200));
+  // The program overwrites the estimate's stamp; here it stays.
+  EXPECT_EQ(a.pairs[0].timestamp, kEpoch + 85 * kMs);
 }
 
 TEST(Association, TrajectoriesThatAreNoneAreRefused) {

@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "common/support/input_error.h"
 #include "common/support/random.h"
+#include "test/seeds.h"
 
 namespace duet {
 namespace {
@@ -22,6 +25,7 @@ struct SyntheticStudy {
   std::vector<std::string> estimators = {"msckf", "window"};
   std::vector<std::string> settings = {"default"};
   int seeds = 20;
+  std::uint64_t seed = 11;
   /// Multiplies the error of an arm.
   std::function<double(const StudyRun&)> factor = [](const StudyRun&) { return 1.0; };
 };
@@ -42,7 +46,7 @@ StudyResult MakeStudy(const SyntheticStudy& synthetic) {
   StudyResult study;
   study.name = "synthetic";
   study.foot = {"first estimates on"};
-  Random random(11);
+  Random random(synthetic.seed);
   for (std::size_t s = 0; s < synthetic.streams.size(); ++s) {
     for (const std::string& setting : synthetic.settings) {
       for (const std::string& estimator : synthetic.estimators) {
@@ -107,6 +111,32 @@ TEST(StudyTable, NoDifferenceIsNoVerdict) {
   EXPECT_THAT(TableNamed(tables, "ate.position_m.paired").verdict,
               testing::StartsWith("Nothing can be said of position error (ATE) between msckf and "
                                   "window: msckf's is "));
+}
+
+TEST(StudyTable, WholeTableGivesAFalseVerdictAtMostAsOftenAsAlpha) {
+  // Two names of one estimator on three streams: four tests in a table, and any verdict is wrong.
+  SyntheticStudy synthetic;
+  synthetic.seeds = 12;
+  StudyTableOptions options;
+  options.metrics = {"ate.position_m"};
+  options.bootstrap_resamples = 0;
+  const int repetitions = test::Seeds(600, 150);
+  int wrong = 0;
+  for (int i = 0; i < repetitions; ++i) {
+    synthetic.seed = static_cast<std::uint64_t>(1000 + i);
+    const auto tables = MakeStudyTables(MakeStudy(synthetic), options);
+    for (const TableRow& row : TableNamed(tables, "ate.position_m.paired").rows) {
+      if (row.cells.empty() || row.cells.back().text == "nothing shown") continue;
+      ++wrong;
+      break;
+    }
+  }
+  // Holm promises at most 0.05 for any of them, and with tests that hardly depend on one
+  // another not much less: four standard errors above; and a test that never fires would be none.
+  const double rate = static_cast<double>(wrong) / repetitions;
+  const double sigma = std::sqrt(0.05 * 0.95 / repetitions);
+  EXPECT_LT(rate, 0.05 + 4.0 * sigma);
+  EXPECT_GT(rate, 0.01);
 }
 
 TEST(StudyTable, FourSeedsCannotDecide) {
@@ -248,6 +278,30 @@ TEST(StudyTable, NeesStandsBesideItsBand) {
   EXPECT_EQ(calibration.cells[3].value, 56.0);
   EXPECT_LT(calibration.cells[5].value, 56.0);
   EXPECT_GT(calibration.cells[6].value, 56.0);
+}
+
+TEST(StudyTable, SensitivityTellsWhereMeasuresDisagree) {
+  SyntheticStudy synthetic;
+  synthetic.factor = [](const StudyRun& run) { return run.estimator == "window" ? 0.8 : 1.0; };
+  StudyResult study = MakeStudy(synthetic);
+  for (StudyRun& run : study.runs) {
+    const double position = run.metrics[0].second;
+    run.metrics.emplace_back("ate.position_m.se3", position);
+    // Over short segments the other is better.
+    const double turned = run.estimator == "window" ? 2.0 : 1.0;
+    run.metrics.emplace_back("relative.position_m.1", 0.1 * turned * position);
+  }
+  StudyTableOptions options;
+  options.metrics = {"ate.position_m"};
+  options.bootstrap_resamples = 100;
+  EXPECT_EQ(TableNamed(MakeStudyTables(study, options), "sensitivity").verdict,
+            "Of 3 measures of the position 1 say msckf and 2 window: who is better depends on how "
+            "it is measured.");
+  for (StudyRun& run : study.runs) run.metrics.pop_back();
+  const auto agreeing = MakeStudyTables(study, options);
+  const StudyTable& table = TableNamed(agreeing, "sensitivity");
+  EXPECT_EQ(table.verdict, "Of 2 measures of the position all say window and none msckf.");
+  EXPECT_EQ(table.rows.size(), 3u);
 }
 
 TEST(StudyTable, UnknownMetricNamesTheNearest) {

@@ -100,6 +100,17 @@ TEST(TableRendering, MarkdownShowsTextAndNotMarkup) {
   EXPECT_EQ(rows, 5);
 }
 
+TEST(TableRendering, LatexHasMinusSignsInNumbersOnly) {
+  StudyTable table;
+  table.name = "t";
+  table.columns = {{.title = "a", .is_text = true}, {.title = "b", .spread = "quartiles"}};
+  table.rows.resize(1);
+  table.rows[0].cells.resize(2);
+  table.rows[0].cells[0].text = "run-3";
+  table.rows[0].cells[1] = {.text = "", .value = -0.5, .low = -1.0, .high = 2.0, .decimals = 1};
+  EXPECT_THAT(TableLatex(table), testing::HasSubstr("run-3 & $-$0.5 [$-$1.0, 2.0] \\\\"));
+}
+
 TEST(TableRendering, LatexCompiles) {
   if (std::system("pdflatex --version > /dev/null 2>&1 && kpsewhich booktabs.sty > /dev/null") !=
       0) {
@@ -111,7 +122,7 @@ TEST(TableRendering, LatexCompiles) {
   std::filesystem::create_directories(folder);
   WriteTextFile(folder / "table.tex", TableLatex(HardTable()));
   WriteTextFile(folder / "paper.tex",
-                "\\documentclass{article}\n\\usepackage{booktabs}\n"
+                "\\documentclass{article}\n\\usepackage{booktabs,graphicx}\n"
                 "\\begin{document}\n\\input{table}\n\\end{document}\n");
   const std::string command = "cd '" + folder.string() +
                               "' && pdflatex -interaction=nonstopmode -halt-on-error paper.tex "
@@ -119,6 +130,7 @@ TEST(TableRendering, LatexCompiles) {
   EXPECT_EQ(std::system(command.c_str()), 0) << ReadTextFile(folder / "output.txt");
   const std::string log = ReadTextFile(folder / "paper.log");
   EXPECT_THAT(log, testing::Not(testing::HasSubstr("Missing character")));
+  EXPECT_THAT(log, testing::Not(testing::HasSubstr("Overfull")));
   EXPECT_THAT(log, testing::HasSubstr("Output written on paper.pdf (1 page"));
   std::filesystem::remove_all(folder);
 }

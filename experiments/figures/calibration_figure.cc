@@ -1,0 +1,177 @@
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "common/dataset/csv_reader.h"
+#include "common/support/input_error.h"
+#include "common/support/nearest_name.h"
+#include "common/support/numeric_text.h"
+#include "common/support/text_file.h"
+#include "experiments/calibration_watch.h"
+#include "experiments/figures/figure_makers.h"
+#include "experiments/figures/figure_runs.h"
+#include "experiments/figures/figure_style.h"
+
+namespace duet {
+namespace {
+
+constexpr std::size_t kMostComponents = 6;
+constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
+
+/// How a number of the calibration is shown.
+struct Unit {
+  const char* name;
+  double factor;
+};
+
+Unit UnitOf(const std::string& component) {
+  const auto has = [&](const char* part) { return component.find(part) != std::string::npos; };
+  if (component == "t_d" || component == "t_r") return {"ms", 1e3};
+  if (has("p_CB")) return {"mm", 1e3};
+  if (has("R_CB")) return {"deg", kDegreesPerRadian};
+  for (const char* pixels : {".fx", ".fy", ".ox", ".oy"}) {
+    if (has(pixels)) return {"px", 1.0};
+  }
+  return {component.rfind("T_s", 0) == 0 ? "rad/s per m/s²" : "-", 1.0};
+}
+
+std::vector<std::string> EstimatedComponents(const RecordTable& states) {
+  std::vector<std::string> names;
+  for (const std::string& name : states.names) {
+    if (name.find('[') == std::string::npos && states.Find("sigma_" + name) != nullptr) {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
+
+// The times, then the first number of each block, as far as they go.
+std::vector<std::string> ChosenComponents(const std::vector<std::string>& estimated,
+                                          const std::vector<std::string>& asked,
+                                          const std::string& file) {
+  if (estimated.empty()) {
+    throw InputError(file, 0, "",
+                     "holds no calibration; expected a run that estimates one, e.g. with --set "
+                     "shared.calibration.t_d.state=estimated");
+  }
+  for (const std::string& name : asked) {
+    if (std::find(estimated.begin(), estimated.end(), name) == estimated.end()) {
+      throw InputError("", 0, "--component",
+                       "'" + name + "' is not estimated" + DidYouMean(name, estimated));
+    }
+  }
+  if (!asked.empty()) return asked;
+  std::vector<std::string> chosen;
+  for (const char* name :
+       {"t_d", "t_r", "cam0.p_CB.x", "cam0.R_CB.x", "cam0.fx", "T_g.11", "T_a.11"}) {
+    if (chosen.size() < kMostComponents &&
+        std::find(estimated.begin(), estimated.end(), name) != estimated.end()) {
+      chosen.emplace_back(name);
+    }
+  }
+  for (const std::string& name : estimated) {
+    if (chosen.empty()) chosen.push_back(name);
+  }
+  return chosen;
+}
+
+// calibration_truth.csv of a study's record: `name,true`.
+std::map<std::string, double> TrueCalibration(const FigureRun& run) {
+  std::map<std::string, double> truth;
+  const std::filesystem::path file = run.folder / "calibration_truth.csv";
+  if (!std::filesystem::exists(file)) return truth;
+  const std::string csv = ReadTextFile(file);
+  std::size_t begin = 0;
+  for (int line = 1; begin < csv.size(); ++line) {
+    const std::size_t end = std::min(csv.find('\n', begin), csv.size());
+    const std::string row = csv.substr(begin, end - begin);
+    begin = end + 1;
+    if (row.empty() || row[0] == '#' || row.rfind("name", 0) == 0) continue;
+    const std::size_t comma = row.find(',');
+    const std::optional<double> value =
+        comma == std::string::npos ? std::nullopt : ParseDouble(row.substr(comma + 1));
+    if (!value) throw InputError(file, line, "", "expected a name and a number");
+    truth[row.substr(0, comma)] = *value;
+  }
+  return truth;
+}
+
+std::map<std::string, double> ToldCalibration(const FigureRun& run) {
+  std::map<std::string, double> told;
+  const std::filesystem::path file = run.folder / "calibration.csv";
+  if (!std::filesystem::exists(file)) return told;
+  for (const CalibrationWatch::Number& number : ReadCalibrationCsv(ReadTextFile(file), file)) {
+    told[number.name] = number.told;
+  }
+  return told;
+}
+
+}  // namespace
+
+Figure CalibrationFigure(const FigureInput& input) {
+  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const std::vector<FigureRun> runs = ExampleRuns(all);
+  std::vector<RecordTable> states;
+  for (const FigureRun& run : runs) states.push_back(ReadRecordTable(run.folder / "states.csv"));
+  const std::vector<std::string> components = ChosenComponents(
+      EstimatedComponents(states.front()), input.components, runs.front().folder / "states.csv");
+
+  Figure figure;
+  figure.sources = DescribeSources(runs);
+  Timestamp start = 0;
+  for (const RecordTable& table : states) {
+    if (table.stamps.empty()) continue;
+    start = start == 0 ? table.stamps.front() : std::min(start, table.stamps.front());
+  }
+  bool truth_known = false;
+  for (const std::string& component : components) {
+    const Unit unit = UnitOf(component);
+    Panel panel{.x = {.label = "time after the first state [s]"},
+                .y = {.label = component + " [" + unit.name + "]"},
+                .height_mm = components.size() > 3 ? 21.0 : 28.0,
+                .share_x = component != components.back()};
+    for (std::size_t n = 0; n < runs.size(); ++n) {
+      const std::vector<double>* values = states[n].Find(component);
+      const std::vector<double>* sigmas = states[n].Find("sigma_" + component);
+      if (values == nullptr || sigmas == nullptr || values->empty()) continue;
+      std::vector<double> t_s, value, low, high;
+      for (std::size_t i = 0; i < values->size(); ++i) {
+        t_s.push_back(SecondsBetween(start, states[n].stamps[i]));
+        value.push_back((*values)[i] * unit.factor);
+        low.push_back(((*values)[i] - 3.0 * (*sigmas)[i]) * unit.factor);
+        high.push_back(((*values)[i] + 3.0 * (*sigmas)[i]) * unit.factor);
+      }
+      const std::vector<double> span = {t_s.front(), t_s.back()};
+      const Look look = LookOfEstimator(runs[n].where.estimator, n);
+      Look sigma_look = SigmaLook(look);
+      sigma_look.dash = look.dash == kSolid ? kSolid : kShortDashed;
+      // The reference is the first run's: the same for all on one stream.
+      if (n == 0) {
+        const std::map<std::string, double> truth = TrueCalibration(runs[n]);
+        const std::map<std::string, double> told = ToldCalibration(runs[n]);
+        const auto add = [&](const std::map<std::string, double>& from, const char* name,
+                             const Look& how) {
+          const auto found = from.find(component);
+          if (found == from.end()) return false;
+          const double level = found->second * unit.factor;
+          panel.series.push_back(LineSeries(name, name, how, span, {level, level}));
+          return true;
+        };
+        truth_known = add(truth, "truth", TruthLook()) || truth_known;
+        (void)add(told, "told", {.colour = kGrey, .dash = kDotted, .width_pt = 0.8});
+      }
+      const std::string& label = runs[n].label;
+      panel.series.push_back(LineSeries(label, label, look, t_s, value));
+      panel.series.push_back(
+          LineSeries(label + " -3 sigma", label + ", ±3σ", sigma_look, t_s, low));
+      panel.series.push_back(LineSeries(label + " +3 sigma", "", sigma_look, t_s, high));
+    }
+    figure.panels.push_back(std::move(panel));
+  }
+  if (!truth_known) {
+    figure.notes.push_back("The records hold no true calibration (calibration_truth.csv).");
+  }
+  return figure;
+}
+
+}  // namespace duet

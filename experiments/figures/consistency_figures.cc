@@ -1,0 +1,103 @@
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "common/support/input_error.h"
+#include "evaluation/chi_squared.h"
+#include "experiments/figures/figure_makers.h"
+#include "experiments/figures/figure_runs.h"
+#include "experiments/figures/figure_style.h"
+
+namespace duet {
+namespace {
+
+constexpr double kConfidence = 0.95;
+
+// Of one estimator: at each frame that all of its runs have, the mean over the runs.
+struct MeanNees {
+  std::vector<double> t_s;
+  std::vector<double> mean;
+  int runs = 0;
+};
+
+MeanNees MeanOverRuns(const std::vector<NeesRun>& runs, NeesBlock block) {
+  struct Sum {
+    double sum = 0.0;
+    int count = 0;
+  };
+  std::map<Timestamp, Sum> at;
+  MeanNees mean;
+  Timestamp start = 0;
+  for (const NeesRun& run : runs) {
+    if (run.failed || run.samples.empty()) continue;
+    start = mean.runs == 0 ? run.start : std::min(start, run.start);
+    ++mean.runs;
+    for (const NeesSample& sample : run.samples) {
+      const std::optional<double>& value = sample.value[static_cast<std::size_t>(block)];
+      if (!value) continue;
+      Sum& sum = at[sample.timestamp];
+      sum.sum += *value;
+      ++sum.count;
+    }
+  }
+  for (const auto& [stamp, sum] : at) {
+    if (sum.count != mean.runs) continue;
+    mean.t_s.push_back(SecondsBetween(start, stamp));
+    mean.mean.push_back(sum.sum / sum.count);
+  }
+  return mean;
+}
+
+}  // namespace
+
+Figure NeesOverTimeFigure(const FigureInput& input) {
+  const std::vector<FigureRun> runs = RunsOfFirstGroup(FindRuns(input.folders));
+  Figure figure;
+  figure.sources = DescribeSources(runs);
+  const std::vector<std::string> estimators = EstimatorsOf(runs);
+  std::map<std::string, std::vector<NeesRun>> nees;
+  for (const FigureRun& run : runs) nees[run.where.estimator].push_back(NeesOf(run));
+
+  constexpr std::array<NeesBlock, 3> kBlocks = {NeesBlock::kPose, NeesBlock::kOrientation,
+                                                NeesBlock::kPosition};
+  for (std::size_t i = 0; i < kBlocks.size(); ++i) {
+    const int dof = NeesBlockSize(kBlocks[i]);
+    Panel panel{.x = {.label = "time after the first state [s]"},
+                .y = {.label = std::string(NeesBlockName(kBlocks[i])) + " NEES [-]", .low = 0.0},
+                .height_mm = 30.0,
+                .share_x = i + 1 < kBlocks.size()};
+    double end_s = 0.0;
+    std::vector<int> counts;
+    for (std::size_t n = 0; n < estimators.size(); ++n) {
+      const MeanNees mean = MeanOverRuns(nees[estimators[n]], kBlocks[i]);
+      if (mean.t_s.empty()) continue;
+      end_s = std::max(end_s, mean.t_s.back());
+      counts.push_back(mean.runs);
+      const std::string legend =
+          estimators[n] + ", " + std::to_string(mean.runs) + (mean.runs == 1 ? " run" : " runs");
+      panel.series.push_back(LineSeries(estimators[n], legend, LookOfEstimator(estimators[n], n),
+                                        mean.t_s, mean.mean));
+    }
+    if (counts.empty()) {
+      throw InputError(runs.front().folder.string() + " and its like have no NEES to draw");
+    }
+    // Most often one band: all estimators have as many runs.
+    for (const int count : std::set<int>(counts.begin(), counts.end())) {
+      const Band band = MeanChiSquaredBand(dof, count, kConfidence);
+      const std::string of = std::to_string(count) + (count == 1 ? " run" : " runs");
+      panel.series.insert(
+          panel.series.begin(),
+          BandSeries("band of " + of, "95 % band of " + of, {.colour = kGrey, .opacity = 0.3},
+                     {0.0, end_s}, {band.low, band.low}, {band.high, band.high}));
+    }
+    panel.series.push_back(LineSeries("expected", "expected", {.colour = kBlack, .width_pt = 0.4},
+                                      {0.0, end_s}, {1.0 * dof, 1.0 * dof}));
+    figure.panels.push_back(std::move(panel));
+  }
+  figure.notes.push_back(
+      "Mean over the runs at each frame, without alignment; a consistent estimator is within the "
+      "band at 95 % of the frames (which depend on one another).");
+  return figure;
+}
+
+}  // namespace duet

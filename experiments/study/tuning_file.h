@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/study/study_file.h"
+
+namespace duet {
+
+/// One setting that is searched over, and the values that it may take.
+struct TuningDimension {
+  std::string key;
+  std::vector<YamlNode> values;
+  std::string file;
+};
+
+/// Equal-effort tuning: the same number of settings is tried for each estimator, on seeds or
+/// recordings that the report does not contain. The file is a study's (docs/studies.md) with
+/// `tuning` in place of `study`, without settings, and with the keys below.
+struct TuningFile {
+  StudyFile study;  ///< of the search: its settings are the trials
+  int budget = 0;   ///< trials of each estimator, the defaults (trial 0) among them
+  std::string objective;
+  SeedRange report_seeds;  ///< of the studies that the result is for; disjoint from the search's
+};
+
+/// Trial 0 changes nothing; the others draw each setting's value with equal chances (random search:
+/// Bergstra and Bengio, JMLR 2012), without drawing a combination twice. What the estimators search
+/// together (`shared` keys) has the same values in the same trial. The same file gives the same
+/// trials. Throws InputError as ParseStudyFile does, and where an estimator has fewer combinations
+/// than the budget, or the seeds overlap.
+[[nodiscard]] TuningFile ParseTuningFile(std::string_view yaml, const std::filesystem::path& file,
+                                         bool quick);
+
+}  // namespace duet

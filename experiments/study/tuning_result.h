@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiments/study/study_records.h"
+#include "experiments/study/tuning_file.h"
+
+namespace duet {
+
+/// What one trial of a search came to, against the defaults (trial 0) on the same streams and
+/// seeds.
+struct TuningTrial {
+  std::string estimator;
+  std::string setting;
+  int runs = 0;
+  int failed = 0;
+  double coverage = 0.0;   ///< median share of the runs that did not fail
+  double objective = 0.0;  ///< its median over them
+  /// Geometric mean of the objective over the defaults' on the same stream and seed, over those
+  /// that neither failed on: below 1 is better.
+  double ratio = 0.0;
+};
+
+/// Trials by estimator, in the order of the study's settings.
+[[nodiscard]] std::vector<TuningTrial> TuningTrials(const StudyResult& result,
+                                                    const std::string& objective);
+
+/// The best trial of an estimator: least failures, then the smallest ratio among those that cover
+/// as much as the defaults (0.02 less at most); the defaults where nothing is better.
+[[nodiscard]] const TuningTrial& BestTrial(const std::vector<TuningTrial>& trials,
+                                           const std::string& estimator);
+
+/// tuning.yaml of a search's folder: the objective and the report's seeds.
+[[nodiscard]] std::string TuningYaml(const TuningFile& tuning);
+[[nodiscard]] bool IsTuningFolder(const std::filesystem::path& folder);
+
+/// What is made of a search's records: search.csv (every trial with its values), search.txt (what
+/// won and what it bought) and report.yaml (a study of the defaults against what won, on the
+/// report's seeds).
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> TuningTexts(
+    const StudyFolder& folder);
+
+}  // namespace duet

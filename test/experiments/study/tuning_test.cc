@@ -1,0 +1,134 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+
+#include "common/support/input_error.h"
+#include "experiments/study/study_plan.h"
+#include "experiments/study/tuning_file.h"
+#include "experiments/study/tuning_result.h"
+
+namespace duet {
+namespace {
+
+using testing::HasSubstr;
+using testing::SizeIs;
+using testing::ThrowsMessage;
+
+std::string TuningText(const std::string& seeds, const std::string& budget,
+                       const std::string& search) {
+  return "tuning: t\nstreams: [{name: room, simulate: room_easy}]\nseeds: " + seeds +
+         "\nreport_seeds: 1..9\nbudget: " + budget + "\nobjective: ate.position_m\nsearch:\n" +
+         search;
+}
+const std::string kSearch =
+    "  shared: {shared.pixel_noise_px: [0.7, 1, 2]}\n"
+    "  msckf: {msckf.max_clones: [5, 8, 12, 20]}\n"
+    "  window: {window.max_frames: [5, 8], window.max_iterations: [2, 4, 8]}\n";
+
+TuningFile ParseTuning(const std::string& yaml, bool quick = false) {
+  return ParseTuningFile(yaml, "t.yaml", quick);
+}
+
+std::string ValueOf(const StudyChange& trial, const std::string& estimator,
+                    const std::string& name) {
+  for (const StudyKey& key : trial.only.at(estimator)) {
+    if (key.key == name) return key.value.scalar;
+  }
+  return "";
+}
+
+TEST(TuningTest, TheEffortIsEqualAndEveryTrialIsAnother) {
+  const TuningFile tuning = ParseTuning(TuningText("11..12", "10", kSearch));
+  ASSERT_THAT(tuning.study.settings, SizeIs(10));
+  EXPECT_TRUE(tuning.study.settings[0].only.empty());  // the defaults
+  const StudyPlan plan = MakeStudyPlan(tuning.study, "");
+  std::map<std::string, std::set<std::string>> ids;
+  for (const PlannedRun& run : plan.runs) ids[run.estimator].insert(run.id);
+  // A trial may be what the defaults are, and share their records.
+  EXPECT_GE(ids["msckf"].size(), 18U);
+  EXPECT_GE(ids["window"].size(), 18U);
+  EXPECT_LE(ids["msckf"].size(), 20U);
+}
+
+TEST(TuningTest, WhatIsSharedIsTheSameForBothInATrial) {
+  const TuningFile tuning = ParseTuning(TuningText("11..12", "12", kSearch));
+  std::set<std::string> values;
+  for (std::size_t i = 1; i < tuning.study.settings.size(); ++i) {
+    const StudyChange& trial = tuning.study.settings[i];
+    values.insert(ValueOf(trial, "msckf", "shared.pixel_noise_px"));
+    EXPECT_EQ(ValueOf(trial, "msckf", "shared.pixel_noise_px"),
+              ValueOf(trial, "window", "shared.pixel_noise_px"));
+  }
+  EXPECT_THAT(values, SizeIs(3));
+}
+
+TEST(TuningTest, ASearchSaysTheSameTwiceAndGrowsWithItsBudget) {
+  const StudyFile small = ParseTuning(TuningText("11..12", "5", kSearch)).study;
+  const StudyFile large = ParseTuning(TuningText("11..12", "9", kSearch)).study;
+  for (std::size_t i = 1; i < small.settings.size(); ++i) {
+    EXPECT_EQ(ValueOf(small.settings[i], "window", "window.max_frames"),
+              ValueOf(large.settings[i], "window", "window.max_frames"));
+  }
+}
+
+struct BadTuning {
+  std::string yaml;
+  std::string error;
+};
+class BadTuningTest : public testing::TestWithParam<BadTuning> {};
+TEST_P(BadTuningTest, IsRefused) {
+  EXPECT_THAT([] { ParseTuning(GetParam().yaml); },
+              ThrowsMessage<InputError>(HasSubstr(GetParam().error)));
+}
+INSTANTIATE_TEST_SUITE_P(
+    All, BadTuningTest,
+    testing::Values(
+        BadTuning{TuningText("5..12", "4", kSearch), "seeds that the search has too"},
+        BadTuning{TuningText("11..12", "13", kSearch), "msckf has fewer combinations"},
+        BadTuning{TuningText("11..12", "1", kSearch), "budget: expected an integer from 2"},
+        BadTuning{TuningText("11..12", "4", "  msckv: {}\n"), "did you mean 'msckf'?"},
+        BadTuning{TuningText("11..12", "4", "  msckf: {window.max_frames: [5, 8]}\n"),
+                  "search.msckf.window.max_frames: has no place here"},
+        BadTuning{TuningText("11..12", "4", "  msckf: {msckf.max_clones: 5}\n"),
+                  "expected a list of at least two values"},
+        BadTuning{TuningText("11..12", "4", kSearch) + "settings: [{name: a}]\n",
+                  "settings: has no place"},
+        BadTuning{TuningText("11..12", "4", kSearch) + "sed: 3\n", "sed: unknown key"}));
+
+StudyRun RunOf(const std::string& setting, int seed, double ate, bool failed = false,
+               double coverage = 1.0) {
+  StudyRun run;
+  run.id = setting + std::to_string(seed);
+  run.stream = "room";
+  run.estimator = "msckf";
+  run.setting = setting;
+  run.perturbation = "none";
+  run.seed = seed;
+  run.failed = failed;
+  run.metrics = {{"ate.position_m", ate}, {"coverage_share", coverage}};
+  return run;
+}
+
+TEST(TuningTest, TheBestCoversFailsNotAndIsBetterSeedBySeed) {
+  StudyResult result;
+  result.runs = {RunOf("default", 1, 0.1), RunOf("default", 2, 0.4),
+                 // Twice as good on the easy seed, half as good on the hard one: no better.
+                 RunOf("a", 1, 0.05), RunOf("a", 2, 0.8),
+                 // Better on both.
+                 RunOf("b", 1, 0.09), RunOf("b", 2, 0.36),
+                 // Still better, but one run failed; but it covers half.
+                 RunOf("c", 1, 0.01), RunOf("c", 2, 0.01, true), RunOf("d", 1, 0.01, false, 0.5),
+                 RunOf("d", 2, 0.01, false, 0.5)};
+  const std::vector<TuningTrial> trials = TuningTrials(result, "ate.position_m");
+  ASSERT_THAT(trials, SizeIs(5));
+  EXPECT_DOUBLE_EQ(trials[0].ratio, 1.0);
+  EXPECT_NEAR(trials[1].ratio, 1.0, 1e-12);
+  EXPECT_NEAR(trials[2].ratio, 0.9, 1e-12);
+  EXPECT_EQ(trials[3].failed, 1);
+  EXPECT_EQ(BestTrial(trials, "msckf").setting, "b");
+}
+
+}  // namespace
+}  // namespace duet
