@@ -102,11 +102,11 @@ void AddCurves(const fs::path& folder, Report* report) {
     const ManifestReader manifest = ReadManifest(record);
     const RecordedTruth truth = ReadTruthOf(record, manifest);
     const std::string init = manifest.Text("init");
-    const bool from_truth = init == "groundtruth" || init == "drawn";
-    report->started_from_truth = report->started_from_truth && from_truth;
+    run.started_from_truth = init == "groundtruth" || init == "drawn";
     // Where the record does not say whether a NEES is claimed: as duet compare does it.
-    const bool with_nees = HasMetric(run.run, "nees.pose") ||
-                           (report->kind == "run" && from_truth && truth.simulated_tracks);
+    const bool with_nees =
+        HasMetric(run.run, "nees.pose") ||
+        (report->kind == "run" && run.started_from_truth && truth.simulated_tracks);
     const std::optional<RunCurves> curves =
         ReadRunCurves(record, truth.truth ? &*truth.truth : nullptr, with_nees);
     if (curves) run.curves = Thinned(*curves, most);

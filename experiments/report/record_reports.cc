@@ -57,6 +57,7 @@ ReportRun DescribeRun(const fs::path& root, const fs::path& record, StudyRun run
           .record = record == root ? record.filename() : record.lexically_relative(root),
           .program = manifest.Text("version") + " " + manifest.Text("commit"),
           .settings_sha256 = manifest.Text("settings_sha256"),
+          .started_from_truth = false,
           .curves = std::nullopt};
 }
 

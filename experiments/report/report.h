@@ -18,6 +18,8 @@ struct ReportRun {
   std::filesystem::path record;
   std::string program;  ///< version and commit that made the record
   std::string settings_sha256;
+  /// Its estimate is shown as it is; otherwise it is first laid onto the truth.
+  bool started_from_truth = false;
   std::optional<RunCurves> curves;  ///< thinned
 };
 
@@ -44,9 +46,6 @@ struct Report {
   std::vector<ReportText> texts;
   std::vector<ReportFigure> figures;
   std::vector<ReportRun> runs;
-  /// Estimates are shown as they are where all runs were started from the truth; otherwise they are
-  /// laid onto it by position and yaw.
-  bool started_from_truth = true;
   std::vector<std::string> foot;
 };
 

@@ -52,6 +52,7 @@ Json RunJson(const ReportRun& report_run, Timestamp origin) {
   for (const auto& [key, value] : run.metrics) metrics.push_back({key, NumberJson(value)});
   json["metrics"] = std::move(metrics);
   if (report_run.curves) {
+    json["from_truth"] = report_run.started_from_truth;
     json["instants"] = report_run.curves->all_instants;
     json["alignment"] = AlignmentJson(report_run.curves->alignment);
     json["curves"] = EncodeCurves(*report_run.curves, origin);
@@ -97,7 +98,6 @@ std::string ReportDataJson(const Report& report) {
   Json json = {{"format", "duet report 1"},
                {"columns", kCurveColumns},
                {"estimators", std::move(estimators)},
-               {"alignment", report.started_from_truth ? "none" : "posyaw"},
                {"metrics", MetricsJson(report)},
                {"nees", NeesJson()}};
   std::map<std::string, Timestamp> origins = OriginsOf(report.runs);

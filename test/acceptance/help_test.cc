@@ -12,7 +12,8 @@ using testing::Not;
 TEST(HelpTest, ListsEveryCommand) {
   const ProgramResult help = RunDuet({"help"});
   EXPECT_EQ(help.status, 0);
-  for (const char* command : {"compare", "track", "run", "evaluate", "simulate", "config"}) {
+  for (const char* command :
+       {"compare", "track", "run", "evaluate", "report", "simulate", "config"}) {
     EXPECT_THAT(help.out, HasSubstr(std::string("\n  ") + command + " "));
     const ProgramResult one = RunDuet({"help", command});
     EXPECT_EQ(one.status, 0) << command;
@@ -24,10 +25,11 @@ TEST(HelpTest, ListsEveryCommand) {
 
 TEST(HelpTest, OfACommandShowsItsFlagsOnlyWithDefaultsAndUnits) {
   const std::string run = RunDuet({"help", "run"}).out;
-  for (const char* flag : {"--dataset DIR", "--backend msckf|window", "--out DIR", "--config FILE",
-                           "--set KEY=VALUE", "--init groundtruth|drawn|rest|auto", "--cameras 0|1|0,1",
-                           "--start S", "--duration S", "--alignment posyaw|se3|sim3|first|none",
-                           "--threads N", "--seed N", "--quiet", "--tracks DIR"}) {
+  for (const char* flag :
+       {"--dataset DIR", "--backend msckf|window", "--out DIR", "--config FILE", "--set KEY=VALUE",
+        "--init groundtruth|drawn|rest|auto", "--cameras 0|1|0,1", "--start S", "--duration S",
+        "--alignment posyaw|se3|sim3|first|none", "--threads N", "--seed N", "--quiet",
+        "--tracks DIR"}) {
     EXPECT_THAT(run, HasSubstr(flag));
   }
   EXPECT_THAT(run, HasSubstr("[s]"));

@@ -146,6 +146,18 @@ async function turns(browser) {
   await browser.press('0');
   check(await picture(browser, '.view') === whole, '0 brings it back');
   const points = await boxOf(browser, '.view');
+  const wheel = async () => {
+    const at = {x: points.left + points.width / 2, y: points.top + points.height / 2};
+    await browser.send('Input.dispatchMouseEvent', {type: 'mouseWheel', ...at, deltaX: 0, deltaY: -120});
+    await browser.settle();
+  };
+  await wheel();
+  check(await picture(browser, '.view') !== whole, 'the wheel moves a view that has the focus');
+  await browser.press('0');
+  await browser.value('document.activeElement.blur()');
+  const unfocused = await picture(browser, '.view');
+  await wheel();
+  check(await picture(browser, '.view') === unfocused, 'and lets the page scroll otherwise');
   let found = false;
   for (let x = 0.2; x < 0.8 && !found; x += 0.02) {
     await browser.move(points.left + x * points.width, points.top + 0.5 * points.height);
@@ -223,7 +235,7 @@ async function withWebGl() {
     writeFileSync(join(folder, 'report_dark.png'), await browser.screenshot());
     await browser.size(420, 900);
     await browser.settle();
-    check(await browser.value('document.documentElement.scrollWidth <= innerWidth'), 'it fits a narrow screen',
+    check(await browser.value('document.documentElement.scrollWidth <= 420'), 'it fits a narrow screen',
           await browser.value('document.documentElement.scrollWidth'));
     check(browser.problems.length === 0, 'the console stays empty', browser.problems);
   } finally {

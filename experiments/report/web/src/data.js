@@ -40,14 +40,23 @@ export function runName(run, coordinates) {
   return parts.length > 0 ? parts.join(', ') : run.estimator;
 }
 
+/** 'none' or 'posyaw' where all runs are alike; 'own': each as it was started. */
+export function firstAlignment(runs) {
+  const shown = runs.filter((run) => run.column);
+  if (shown.every((run) => run.from_truth)) return 'none';
+  return shown.some((run) => run.from_truth) ? 'own' : 'posyaw';
+}
+
 /**
  * A run's curves with its estimate left where it is ('none') or moved by the position and yaw that
- * bring it nearest to the truth ('posyaw'). Errors are true minus estimate; orientation's is the
+ * bring it nearest to the truth ('posyaw'); 'own': left where it was started from the truth. `moved`
+ * says which it is: the position and yaw are not always determined. Errors are true minus estimate; orientation's is the
  * rotation vector of R_true R_estimate^T, in degrees. Positions are [x, y, z] arrays of columns.
  */
 export function curvesOf(run, alignment) {
   run.aligned ||= {};
-  return (run.aligned[alignment] ||= makeCurves(run, alignment));
+  const own = alignment === 'own' ? (run.from_truth ? 'none' : 'posyaw') : alignment;
+  return (run.aligned[own] ||= makeCurves(run, own));
 }
 
 function makeCurves(run, alignment) {
@@ -78,12 +87,13 @@ function makeCurves(run, alignment) {
     has_truth: e[0].some(Number.isFinite),
     has_covariance: covariance[0].some(Number.isFinite),
   };
-  const moved = alignment === 'posyaw' && run.alignment;
+  const moved = alignment === 'posyaw' && Boolean(run.alignment);
   const identity = [0, 0, 0, 1];
   const R = moved ? run.alignment.R : identity;
   const shift = moved ? run.alignment.p : [0, 0, 0];
   const R_orientation = moved ? run.alignment.orientation_R : identity;
   curves.rotation = R;
+  curves.moved = moved;
   for (let i = 0; i < t.length; ++i) {
     const p_i = [p[0][i], p[1][i], p[2][i]];
     const q_i = exponential([r[0][i], r[1][i], r[2][i]]);

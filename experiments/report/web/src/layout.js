@@ -63,17 +63,25 @@ export function boundsOf(store) {
   return {low: snappedLow, high: snappedHigh, floor: snappedLow[2], step, center, radius, key};
 }
 
-export const kMagnifications = [1, 3, 10, 30, 100, 300];
+export const kMagnifications = [1 / 1000, 1 / 300, 1 / 100, 1 / 30, 1 / 10, 1 / 3, 1, 3, 10, 30, 100, 300];
 
-/** The smallest magnification at which the largest ellipsoid can be seen well. */
+/**
+ * How much larger than they are ellipsoids are drawn: as they are, unless they could not be seen or
+ * would hide the rest.
+ */
 export function fittingMagnification(store) {
-  let largest = 0;
+  const kSamples = 20;
+  const sizes = [];
   for (const {run} of store.chosen) {
-    const curves = curvesOf(run, store.alignment);
-    const L = covarianceFactor(curves.covariance, curves.t.length - 1);
-    if (L) largest = Math.max(largest, 3 * Math.hypot(L[0], L[3], L[4], L[6], L[7], L[8]) / Math.sqrt(3));
+    const {covariance, t} = curvesOf(run, store.alignment);
+    for (let k = 0; k <= kSamples; ++k) {
+      const L = covarianceFactor(covariance, Math.round((k / kSamples) * (t.length - 1)));
+      if (L) sizes.push((3 * Math.hypot(...L)) / Math.sqrt(3));
+    }
   }
-  if (largest === 0) return 1;
-  const wanted = (0.05 * boundsOf(store).radius) / largest;
-  return kMagnifications.find((m) => m >= wanted * 0.6) ?? kMagnifications.at(-1);
+  if (sizes.length === 0) return 1;
+  sizes.sort((a, b) => a - b);
+  const share = sizes[sizes.length >> 1] / boundsOf(store).radius;
+  if (share > 0.02 && share < 0.3) return 1;
+  return kMagnifications.find((m) => m * share >= 0.03) ?? kMagnifications.at(-1);
 }

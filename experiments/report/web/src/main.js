@@ -1,10 +1,10 @@
 // The interactive part of a report: builds itself into #explorer from the data in #report-data.
 
 import {Chooser} from './chooser.js';
-import {differingCoordinates, readData, runName} from './data.js';
+import {curvesOf, differingCoordinates, readData, runName} from './data.js';
 import {button, dropDown, element, labelled} from './dom.js';
 import {fittingMagnification, kMagnifications} from './layout.js';
-import {Plots, readout} from './plots.js';
+import {Plots, readout, swatch} from './plots.js';
 import {Scrubber} from './scrubber.js';
 import {Spread} from './spread.js';
 import {openWebGl, Trajectories} from './scene.js';
@@ -38,7 +38,7 @@ function trajectoriesPart(store, names) {
   const host = element('div', {class: 'view'});
   const view = makeView(host, store, names);
   const flat = view instanceof TopView;
-  const magnification = dropDown(kMagnifications.map((m) => [String(m), m === 1 ? 'true size' : `×${m}`]), '1',
+  const magnification = dropDown(kMagnifications.map((m) => [String(m), m === 1 ? 'true size' : m > 1 ? `×${m}` : `1/${Math.round(1 / m)}`]), '1',
                                  (value) => setMagnification(Number(value)));
   const setMagnification = (value) => {
     view.magnification = value;
@@ -59,8 +59,9 @@ function trajectoriesPart(store, names) {
   }
   bar.append(labelled('3σ ellipsoids', magnification));
   if (!flat) bar.append(element('label', {class: 'field'}, along, 'along the way'));
-  const key = element('p', {class: 'note'}, 'Dashed, in the colour of text: the truth. Strong: up to the scrubber. ',
-                      flat ? '' : 'Axes at the estimate: the body, x longest. Drag, wheel or keys move the view.');
+  const truth = swatch({color: '#1b1f24', light: '#e8eaed', dash: [5, 3], name: 'short dashes, black or white'});
+  const key = element('p', {class: 'note'}, truth, 'the truth. An estimate is strong up to the scrubber. ',
+                      flat ? '' : 'Axes at the estimate: the body, x longest. Drag it; after a click on it the wheel and keys move it too.');
   return {part: element('div', {}, bar, host, key), setMagnification};
 }
 
@@ -73,19 +74,30 @@ function plotsPart(store) {
                         (value) => store.set('nees', value));
   const bar = element('div', {class: 'bar'}, labelled('errors', components), labelled('NEES of', nees));
   if (store.data.runs.some((run) => run.alignment)) {
-    bar.append(labelled('estimate', dropDown([['none', 'as it is'], ['posyaw', 'aligned in position and yaw']],
-                                             store.alignment, (value) => store.set('alignment', value))));
+    const choices = [['none', 'as it is'], ['posyaw', 'aligned in position and yaw']];
+    if (store.alignment === 'own') choices.unshift(['own', 'aligned where not started from the truth']);
+    bar.append(labelled('estimate', dropDown(choices, store.alignment, (value) => store.set('alignment', value))));
   }
   bar.append(button('Closer', () => plots.zoom(0.5)), button('Wider', () => plots.zoom(2)),
              button('All', () => plots.setRange(null)));
   const note = element('p', {class: 'note'});
   const say = () => {
     const {confidence} = store.data.nees;
-    note.textContent = (store.alignment === 'none' ?
-        'Errors are true minus estimate in G, nothing aligned; bands and thin lines: ±3σ as the estimator said. ' :
-        'Errors after the alignment in position and yaw; the estimator’s σ belongs to its own start and is left out. ') +
-        `Grey band of the NEES: ${Math.round(100 * confidence)} % of a consistent estimator’s instants. ` +
-        'Drag over a plot to look closer, double-click for all; a click sets the scrubber.';
+    const curves = store.chosen.map(({run}) => curvesOf(run, store.alignment));
+    const sentences = ['Errors are true minus estimate in G.'];
+    if (curves.some((c) => c.moved)) {
+      sentences.push('Estimates that were not started from the truth, or all where it is chosen, are aligned in ' +
+                     'position and yaw; their σ belongs to their own start and is left out.');
+    }
+    if (curves.some((c) => !c.moved)) {
+      sentences.push('Not aligned: bands and thin lines are ±3σ as the estimator said.');
+    }
+    if (store.alignment !== 'none' && curves.some((c) => !c.moved && c.has_truth)) {
+      sentences.push('Where position and yaw are not determined (a truth that stands still) nothing is aligned.');
+    }
+    sentences.push(`Grey band of the NEES: ${Math.round(100 * confidence)} % of a consistent estimator’s instants.`,
+                   'Drag over a plot to look closer, double-click for all; a click sets the scrubber.');
+    note.textContent = sentences.join(' ');
   };
   store.on('choice', say);
   say();
@@ -98,6 +110,7 @@ function start() {
   const usable = data.runs.filter((run) => run.column);
   if (usable.length === 0) {
     explorer.append(element('p', {class: 'note'}, 'No run of these records has states to show.'));
+    document.documentElement.dataset.ready = 'true';
     return;
   }
   const store = new Store(data);

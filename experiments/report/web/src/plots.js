@@ -67,7 +67,6 @@ function seriesOf(store, quantity) {
   const tables = [];
   const series = [{label: 'time'}];
   const bands = [];
-  const withSigma = store.alignment === 'none';
   for (const {run, slot} of store.chosen) {
     const curves = curvesOf(run, store.alignment);
     const {value, sigma} = quantity.values(curves);
@@ -79,7 +78,7 @@ function seriesOf(store, quantity) {
       dash: slot.dash,
       points: {show: false},
     };
-    if (sigma && withSigma && curves.has_covariance) {
+    if (sigma && !curves.moved && curves.has_covariance) {
       const edge = {
         stroke: translucent(color, 0.55),
         width: 1,
@@ -352,7 +351,7 @@ export function readout(store, names) {
   const rows = store.chosen.map(({run, slot}) => {
     const curves = curvesOf(run, store.alignment);
     const i = indexAt(curves.t, store.shownTime);
-    const withSigma = store.alignment === 'none' && curves.has_covariance;
+    const withSigma = !curves.moved && curves.has_covariance;
     const cell = (value) => element('td', {}, significant(value));
     const sigma = (value) => element('td', {}, withSigma ? significant(kSigmas * value) : '–');
     return element('tr', {}, element('th', {scope: 'row'}, swatch(slot), names(run)),

@@ -51,6 +51,11 @@ export class Trajectories {
     this.scene.add(sun);
     this.camera = new PerspectiveCamera(35, 1, 0.01, 1000);
     this.camera.up.set(0, 0, 1);
+    // The wheel scrolls the page until the view is chosen: it would be a trap otherwise.
+    canvas.addEventListener('wheel', (event) => {
+      this.controls.enableZoom = event.ctrlKey || document.activeElement === canvas;
+    });
+    canvas.addEventListener('pointerdown', () => canvas.focus({preventScroll: true}));
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => this.draw());
     this.content = new Group();

@@ -12,7 +12,7 @@ const kRow = 26;
 const kTop = 6;
 const kAxis = 36;
 const kRight = 14;
-const kLetter = 6.4;  // width of a letter of the labels, about
+const kLetter = 7.2;  // width of a letter of the labels, about
 
 function svg(tag, attributes, ...children) {
   const made = document.createElementNS(kSvg, tag);

@@ -1,5 +1,7 @@
 // What is shown: one object that all views read, and that tells them when it has changed.
 
+import {firstAlignment} from './data.js';
+
 /** Colours of Okabe and Ito that stand out on white and on dark; the line style is the second cue. */
 export const kSlots = [
   {color: '#0072b2', light: '#4aa8e0', dash: [], name: 'solid'},
@@ -15,7 +17,7 @@ export class Store {
   constructor(data) {
     this.data = data;
     this.slots = new Array(kSlots.length).fill(null);  // runs
-    this.alignment = data.alignment;
+    this.alignment = firstAlignment(data.runs);
     this.components = 'xyz';
     this.nees = 'pose';
     this.time = 0;
