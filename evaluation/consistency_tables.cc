@@ -250,7 +250,8 @@ StudyTable FailureTable(const StudyGrid& grid, const StudyTableOptions& options)
   }
   table.verdict = FailureSentence(grid, options);
   table.foot = {
-      "interval: Wilson's; who fails more often: McNemar's exact test of the pairs over "
+      "interval: Wilson's, as if each run had input of its own; who fails more often: McNemar's "
+      "exact test of the pairs over "
       "all streams, Holm over the comparisons"};
   return table;
 }

@@ -16,6 +16,8 @@
 namespace duet {
 namespace {
 
+/// Of a sequence's way; starts a second later leave out less.
+constexpr double kLeastPart = 0.8;
 constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 
 double PublishedValue(const PublishedNumbers& numbers, const std::string& sequence,
@@ -52,6 +54,28 @@ double MedianOfCell(const StudyGrid& grid, std::size_t stream, std::size_t arm,
   return Summarize(grid.cell(stream, arm).Values(metric.key)).median;
 }
 
+/// How much of the published sequence the study's recording has, by the way of its truth; 1 where
+/// one of the two is not known.
+double PartOfSequence(const StudyGrid& grid, std::size_t stream, const Published& published,
+                      const std::string& sequence) {
+  double way_m = 0.0;
+  for (std::size_t a = 0; a < grid.arms().size(); ++a) {
+    for (const double value : grid.cell(stream, a).Values("truth.way_m")) {
+      way_m = std::fmax(way_m, value);
+    }
+  }
+  for (const PublishedSequences& sequences : published.sequences) {
+    for (const SequenceRow& row : sequences.rows) {
+      if (row.sequence == sequence && way_m > 0.0) return way_m / row.length_m;
+    }
+  }
+  return 1.0;
+}
+
+std::string SequencesText(int count) {
+  return std::to_string(count) + (count == 1 ? " sequence" : " sequences");
+}
+
 /// The thesis's table 8.1, of one of its two errors.
 StudyTable ErrorsBesidePublished(const StudyGrid& grid, const Published& published,
                                  const Metric& metric, double PublishedRow::*field,
@@ -77,10 +101,15 @@ StudyTable ErrorsBesidePublished(const StudyGrid& grid, const Published& publish
   // The mean is over the sequences that were run: a mean over others says nothing beside it.
   std::vector<double> sums(table.columns.size() - 1, 0.0);
   int run = 0;
+  int pieces = 0;
   for (const std::string& sequence : sequences) {
     TableRow row;
-    row.cells.push_back(TextCell(sequence));
     const std::optional<std::size_t> stream = StreamNamed(grid, sequence);
+    const double part = stream ? PartOfSequence(grid, *stream, published, sequence) : 0.0;
+    // What is published is of the whole sequence: a piece of it is another.
+    const bool whole = part >= kLeastPart;
+    row.cells.push_back(TextCell(
+        stream && !whole ? sequence + " (" + Number(100.0 * part, 0) + " % of it)" : sequence));
     for (std::size_t a = 0; a < grid.arms().size(); ++a) {
       row.cells.push_back(
           NumberCell(stream ? MedianOfCell(grid, *stream, a, metric) : kNotGiven, 3));
@@ -88,14 +117,25 @@ StudyTable ErrorsBesidePublished(const StudyGrid& grid, const Published& publish
     for (const PublishedNumbers* numbers : with_field) {
       row.cells.push_back(NumberCell(PublishedValue(*numbers, sequence, field), 3));
     }
-    if (stream) {
+    if (stream && !whole) ++pieces;
+    if (stream && whole) {
       ++run;
       for (std::size_t c = 0; c < sums.size(); ++c) sums[c] += row.cells[c + 1].value;
     }
     table.rows.push_back(std::move(row));
   }
+  const std::string beside =
+      "published numbers stand beside these and not in one ranking, because their alignments, "
+      "starts and cameras differ" +
+      (pieces == 0
+           ? std::string()
+           : ", and " + SequencesText(pieces) + " run in part only, of which they say nothing");
+  if (run == 0) {
+    table.verdict = "No sequence was run whole: " + beside + ".";
+    return table;
+  }
   TableRow mean;
-  mean.cells.push_back(TextCell("mean of the " + std::to_string(run) + " that were run"));
+  mean.cells.push_back(TextCell("mean of the " + std::to_string(run) + " run whole"));
   for (const double sum : sums) mean.cells.push_back(NumberCell(sum / run, 3));
   table.rows.push_back(std::move(mean));
   std::string own;
@@ -103,10 +143,8 @@ StudyTable ErrorsBesidePublished(const StudyGrid& grid, const Published& publish
     own += (a == 0 ? "" : ", ") + grid.arms()[a].name + " " + Number(sums[a] / run, 3) + " " +
            metric.unit;
   }
-  table.verdict = "Over the " + std::to_string(run) + " sequences of " +
-                  std::to_string(sequences.size()) + " that were run the mean is: " + own +
-                  "; published numbers stand beside these and not in one ranking, because their "
-                  "alignments, starts and cameras differ.";
+  table.verdict = "Over the " + SequencesText(run) + " of " + std::to_string(sequences.size()) +
+                  " that were run whole the mean is: " + own + "; " + beside + ".";
   return table;
 }
 
@@ -131,6 +169,7 @@ StudyTable SequencesTable(const StudyGrid& grid, const PublishedSequences& seque
   }
   table.columns.push_back({.title = "remark", .is_text = true});
   double largest = 0.0;
+  double smallest = std::numeric_limits<double>::infinity();
   int compared = 0;
   for (const SequenceRow& sequence : sequences.rows) {
     TableRow row;
@@ -150,19 +189,19 @@ StudyTable SequencesTable(const StudyGrid& grid, const PublishedSequences& seque
       row.cells.push_back(NumberCell(theirs, metric.decimals));
       if (property.field == &SequenceRow::length_m && std::isfinite(own)) {
         ++compared;
-        largest = std::fmax(largest, std::abs(own / theirs - 1.0));
+        largest = std::fmax(largest, own / theirs);
+        smallest = std::fmin(smallest, own / theirs);
       }
     }
     row.cells.push_back(TextCell(sequence.remark));
     table.rows.push_back(std::move(row));
   }
-  table.verdict =
-      compared == 0
-          ? "No run has the metrics of its truth."
-          : "Of the " + std::to_string(compared) +
-                " sequences that were run the published length and that of the truth differ by at "
-                "most " +
-                Number(100.0 * largest, 1) + " %.";
+  table.verdict = compared == 0
+                      ? "No run has the metrics of its truth."
+                      : "Of " + SequencesText(compared) + " run, the truth's way is " +
+                            Number(100.0 * smallest, 0) +
+                            (compared == 1 ? std::string() : " to " + Number(100.0 * largest, 0)) +
+                            " % of the published length.";
   table.foot = {"published: " + sequences.source,
                 "truth: its way in steps of 0.1 s, of the span that is evaluated"};
   return table;

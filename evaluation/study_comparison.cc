@@ -66,19 +66,61 @@ std::vector<std::pair<std::size_t, std::size_t>> ComparedArms(const StudyGrid& g
   return pairs;
 }
 
-/// Runs of the two cells with the same seed, in the order of the first cell.
+/// One pair of what several runs on identical input say: starts or pixel jitter on one recording
+/// are no independent observations of who is better. Medians of those that ran; failed is who
+/// failed in more than half of them.
+PairedRuns OnePairOf(const std::vector<PairedRuns>& pairs) {
+  if (pairs.size() == 1) return pairs.front();
+  std::vector<double> first;
+  std::vector<double> second;
+  std::size_t first_failed = 0;
+  std::size_t second_failed = 0;
+  for (const PairedRuns& pair : pairs) {
+    first_failed += pair.first_failed ? 1 : 0;
+    second_failed += pair.second_failed ? 1 : 0;
+    if (pair.first_failed || pair.second_failed) continue;
+    if (!std::isfinite(pair.first) || !std::isfinite(pair.second)) continue;
+    first.push_back(pair.first);
+    second.push_back(pair.second);
+  }
+  return {MedianOrNaN(first), MedianOrNaN(second), 2 * first_failed > pairs.size(),
+          2 * second_failed > pairs.size()};
+}
+
+/// Runs of the two cells with the same seed, those on identical input as one pair, in the order of
+/// the first cell.
 std::vector<PairedRuns> PairsOf(const StudyCell& first, const StudyCell& second,
                                 const Metric& metric) {
   std::map<int, const StudyRun*> by_seed;
   for (const StudyRun* run : second.runs) by_seed.emplace(run->seed, run);
-  std::vector<PairedRuns> pairs;
+  std::vector<std::vector<PairedRuns>> by_input;
+  std::map<std::string, std::size_t> index;
   for (const StudyRun* run : first.runs) {
     const auto other = by_seed.find(run->seed);
     if (other == by_seed.end()) continue;
-    pairs.push_back({MetricValue(*run, metric.key), MetricValue(*other->second, metric.key),
-                     run->failed, other->second->failed});
+    // Where the input is not known each run has its own.
+    const std::string input =
+        run->stream_id.empty() ? "seed " + std::to_string(run->seed) : run->stream_id;
+    const auto [found, is_new] = index.emplace(input, by_input.size());
+    if (is_new) by_input.emplace_back();
+    by_input[found->second].push_back({MetricValue(*run, metric.key),
+                                       MetricValue(*other->second, metric.key), run->failed,
+                                       other->second->failed});
   }
+  std::vector<PairedRuns> pairs;
+  for (const auto& of_input : by_input) pairs.push_back(OnePairOf(of_input));
   return pairs;
+}
+
+/// Streams of one pair each are the observations themselves: they are resampled together.
+std::vector<std::vector<PairedRuns>> Resampled(std::vector<std::vector<PairedRuns>> strata) {
+  std::vector<PairedRuns> single;
+  for (const auto& stratum : strata) {
+    if (stratum.size() == 1) single.push_back(stratum.front());
+  }
+  std::erase_if(strata, [](const auto& stratum) { return stratum.size() == 1; });
+  if (!single.empty()) strata.push_back(std::move(single));
+  return strata;
 }
 
 /// The median difference between two runs of the cell: of logarithms where `ratio`.
@@ -166,7 +208,7 @@ ArmComparison CompareTwoArms(const StudyGrid& grid, std::size_t first, std::size
     strata.push_back(std::move(pairs));
     streams.push_back(s);
   }
-  if (strata.size() > 1) add_row("", strata, streams);
+  if (strata.size() > 1) add_row("", Resampled(strata), streams);
   if (!arms.rows.empty()) {
     arms.chaos_floor =
         ChaosFloor(grid, first, second, metric, arms.overall().paired.is_ratio, options);

@@ -220,6 +220,8 @@ StudyTable PairedTable(const MetricComparison& comparison, const StudyTableOptio
       "of "
       "which one run failed has the largest rank of all, to the other's favour; one of which both "
       "failed is left out; exact up to 50 pairs; all streams: these streams, not others like them",
+      "runs on identical input (starts or jitter on one recording) are one pair, of their medians; "
+      "streams of one pair each are resampled together",
       "p (Holm): corrected over the " + std::to_string(comparison.tests) +
           " tests of this table; better where it is at most " + Number(options.alpha, 2)};
   const auto few = [](const ComparisonRow& row) {

@@ -261,6 +261,26 @@ TEST(StudyTable, RepeatedRecordCountsOnce) {
   EXPECT_THAT(tables.front().foot.back(), HasSubstr("made from 2 records"));
 }
 
+TEST(StudyTable, StartsInOneRecordingAreOneObservation) {
+  SyntheticStudy synthetic;
+  synthetic.streams = {"A", "B", "C", "D", "E", "F", "G"};
+  synthetic.seeds = 5;
+  synthetic.factor = [](const StudyRun& run) { return run.estimator == "window" ? 0.5 : 1.0; };
+  StudyResult study = MakeStudy(synthetic);
+  for (StudyRun& run : study.runs) run.stream_id = run.stream;
+  StudyTableOptions options;
+  options.metrics = {"ate.position_m"};
+  options.bootstrap_resamples = 200;
+  const auto tables = MakeStudyTables(study, options);
+  const StudyTable& paired = TableNamed(tables, "ate.position_m.paired");
+  EXPECT_EQ(paired.rows[1].cells[1].value, 1.0);
+  EXPECT_EQ(paired.rows[1].cells.back().text, "too few pairs");
+  const TableRow& all = paired.rows.back();
+  EXPECT_EQ(all.cells[1].value, 7.0);
+  EXPECT_LT(all.cells[3].low, all.cells[3].high);  // resampled over the recordings
+  EXPECT_EQ(all.cells[5].value, 1.0 / 64.0);
+}
+
 TEST(StudyTable, NeesStandsBesideItsBand) {
   SyntheticStudy synthetic;
   StudyResult study = MakeStudy(synthetic);
