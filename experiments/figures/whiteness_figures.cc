@@ -158,8 +158,9 @@ Figure WhitenessFigure(const FigureInput& input) {
         sums[i] /= std::max(1, sequences);
       }
       if (lags > 0) last_s = std::max(last_s, lag_s.back());
-      panel.series.push_back(
-          LineSeries(estimators[n], estimators[n], LookOfEstimator(estimators[n], n), lag_s, sums));
+      panel.series.push_back(LineSeries(estimators[n] + (position ? " position" : " orientation"),
+                                        estimators[n], LookOfEstimator(estimators[n], n), lag_s,
+                                        sums));
     }
     panel.series.push_back(
         LineSeries("zero", "", {.colour = kBlack, .width_pt = 0.4}, {0.0, last_s}, {0.0, 0.0}));

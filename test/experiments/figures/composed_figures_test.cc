@@ -111,7 +111,7 @@ TEST(ComposedFigures, NormalizedErrorsAndTheirAutocorrelation) {
   // A constant of n samples correlates with itself by the share that overlaps; the first 2 s of
   // the 7 s are left out.
   const std::vector<double> correlation =
-      DataOf("whiteness", input, folder).Column("msckf: position");
+      DataOf("whiteness", input, folder).Column("msckf position: autocorrelation");
   ASSERT_GT(correlation.size(), 10u);
   EXPECT_NEAR(correlation[0], 1.0, 1e-9);
   EXPECT_NEAR(correlation[10], 90.0 / 100.0, 1e-9);
