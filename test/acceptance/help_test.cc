@@ -24,10 +24,11 @@ TEST(HelpTest, ListsEveryCommand) {
 
 TEST(HelpTest, OfACommandShowsItsFlagsOnlyWithDefaultsAndUnits) {
   const std::string run = RunDuet({"help", "run"}).out;
-  for (const char* flag : {"--dataset DIR", "--backend msckf|window", "--out DIR", "--config FILE",
-                           "--set KEY=VALUE", "--init groundtruth|drawn|rest|auto", "--cameras 0|1|0,1",
-                           "--start S", "--duration S", "--alignment posyaw|se3|sim3|first|none",
-                           "--threads N", "--seed N", "--quiet", "--tracks DIR"}) {
+  for (const char* flag :
+       {"--dataset DIR", "--backend msckf|window", "--out DIR", "--config FILE", "--set KEY=VALUE",
+        "--init groundtruth|drawn|rest|auto", "--cameras 0|1|0,1", "--start S", "--duration S",
+        "--alignment posyaw|se3|sim3|first|none", "--threads N", "--seed N", "--quiet",
+        "--tracks DIR"}) {
     EXPECT_THAT(run, HasSubstr(flag));
   }
   EXPECT_THAT(run, HasSubstr("[s]"));
