@@ -85,6 +85,10 @@ TEST_F(StudyTest, ARecordHoldsWhatItSaysAndTheTablesComeOfIt) {
   EXPECT_THAT(runs, HasSubstr("id,stream,estimator,setting,perturbation,seed,failed,reason,"));
   EXPECT_EQ(std::count(runs.begin(), runs.end(), '\n'), 5);
   EXPECT_THAT(result.out, HasSubstr("made from 4 records of 4 runs"));
+  for (const char* made : {"tables/ate.position_m.tex", "tables/ate.position_m.paired.csv",
+                           "figures/rmse_over_runs.csv", "report.html"}) {
+    EXPECT_TRUE(fs::exists(fs::path(out_) / made)) << made;
+  }
 }
 
 TEST_F(StudyTest, JobsAndOrderChangeNoByte) {
@@ -224,6 +228,8 @@ TEST_F(StudyTest, VerifyFindsWhatIsMissingChangedOrOfAnotherVersion) {
         "runs/" + name + "/evaluation.json: is not what the record gives");
   finds(record / "states.csv", "runs/" + name + "/states.csv: has changed");
   finds(fs::path(out_) / "runs.csv", "runs.csv: is not what the records give");
+  finds(fs::path(out_) / "tables" / "ate.position_m.tex",
+        "tables/ate.position_m.tex: is not what the records give");
   finds(fs::path(out_) / "streams" / stream / "mav0" / "tracks0" / "data.csv",
         "streams/" + stream + ": its tracks have changed");
 

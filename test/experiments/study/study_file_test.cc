@@ -106,6 +106,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadStudy{kStudy + "settings:\n  - {name: a, set: {frontend.threads: 2}}\n",
                  "frontend.threads: has no place here"},
         BadStudy{kStudy + "baseline: none of these\n", "is the name of none"},
+        BadStudy{kStudy + "metrics: [ate.positon_m]\n", "did you mean 'ate.position_m'?"},
         BadStudy{kStudy + "compare: setings\n", "did you mean 'settings'?"},
         BadStudy{kStudy + "quick: {seeds: none}\n", "seeds: expected A..B"},
         BadStudy{kStudy + "quick: {sedes: 1..2}\n", "sedes: unknown key"},
