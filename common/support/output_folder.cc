@@ -12,6 +12,7 @@
 #include "common/support/input_error.h"
 #include "common/support/logging.h"
 #include "common/support/numeric_text.h"
+#include "common/support/partial_name.h"
 
 namespace duet {
 namespace fs = std::filesystem;
@@ -47,6 +48,10 @@ void RefuseExisting(const fs::path& target) {
 
 }  // namespace
 
+std::string PartialName(const std::string& target) {
+  return target + kPartial + HostName() + "-" + std::to_string(getpid());
+}
+
 OutputFolder::OutputFolder(const fs::path& target, Makers makers) : target_(target) {
   // "out/" and "out" are the same folder; the sibling's name needs the latter.
   if (!target_.has_filename()) target_ = target_.parent_path();
@@ -60,8 +65,7 @@ OutputFolder::OutputFolder(const fs::path& target, Makers makers) : target_(targ
     }
   }
   // A crashed process that had the same id may have left its folder: take the next free name.
-  const std::string base =
-      target_.string() + kPartial + HostName() + "-" + std::to_string(getpid());
+  const std::string base = PartialName(target_.string());
   for (int attempt = 0; attempt < 100; ++attempt) {
     const fs::path candidate = attempt == 0 ? base : base + "-" + std::to_string(attempt);
     if (fs::create_directory(candidate, error)) {

@@ -9,6 +9,7 @@
 
 #include "common/support/input_error.h"
 #include "common/support/logging.h"
+#include "common/support/partial_name.h"
 
 namespace duet {
 
@@ -68,7 +69,7 @@ void WriteTextFile(const std::filesystem::path& path, std::string_view text) {
 }
 
 void ReplaceTextFile(const std::filesystem::path& path, std::string_view text) {
-  std::string name = path.string() + ".partial-XXXXXX";
+  std::string name = PartialName(path.string()) + "-XXXXXX";
   const int descriptor = mkstemp(name.data());
   if (descriptor < 0) {
     throw OutputError(path.string(), std::string("cannot be written: ") + std::strerror(errno));

@@ -211,8 +211,9 @@ int RunStudy(StudyFile study, const StudyChoices& choices) {
   const StudyLock lock = LockFolder(choices.out, StudyLock::Kind::kExclusive);
   std::vector<int> left = RunsLeft(plan, choices.out);
   WritePlan(plan, choices.out);
-  RemoveAbandonedPartials(choices.out / "runs");
-  RemoveAbandonedPartials(choices.out / "streams");
+  for (const char* part : {"", "runs", "streams", "tables", "figures", "failures", "published"}) {
+    RemoveAbandonedPartials(choices.out / part);
+  }
   const std::size_t all = plan.Distinct().size();
   const std::size_t before = all - left.size();
   if (before > 0 && !choices.quiet) {

@@ -49,7 +49,7 @@ TEST_F(StudyEnginesTest, KilledAtTwentyRandomMomentsItEndsWithTheSameBytes) {
   int kills = 0;
   for (int i = 0; i < 20; ++i) {
     // A study that has got through is begun anew.
-    if (fs::exists(out_ + "/runs.csv")) {
+    if (fs::exists(out_ + "/manifest.json")) {
       EXPECT_EQ(CanonicalFilesOf(out_), undisturbed_);
       fs::remove_all(out_);
     }
