@@ -3,7 +3,10 @@
 # CTest test. COST is its time on one core where that is more than a few seconds: ctest starts the
 # longest first, and no core waits at the end (a fresh build folder knows no times of its own).
 
-add_custom_target(unit_tests)  # all programs with the label unit, for the sanitizer builds
+add_custom_target(unit_tests)  # all programs with the label unit
+# Of these what CI builds with sanitizers: without the label numeric, which compile for minutes then and whose
+# code the others run too, from recordings to both estimators.
+add_custom_target(sanitizer_tests)
 
 add_library(duet_warnings INTERFACE)
 target_compile_options(duet_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion
@@ -72,5 +75,8 @@ function(duet_add_test name)
   endif()
   if("unit" IN_LIST ARG_LABELS)
     add_dependencies(unit_tests ${name})
+    if(NOT "numeric" IN_LIST ARG_LABELS)
+      add_dependencies(sanitizer_tests ${name})
+    endif()
   endif()
 endfunction()
