@@ -1,9 +1,13 @@
 #!/usr/bin/env bash
-# Runs the shipped studies and prints docs/results.md: test/evidence/studies.sh OUT [--quick] > docs/results.md
+# Runs the shipped studies, or those that are named, and prints docs/results.md:
+#   test/evidence/studies.sh OUT [--quick [STUDY...]] > docs/results.md
 # An hour on two cores; with --quick a quarter of one. Studies that are there already are not run again.
 set -euo pipefail
 out=$1
 quick=${2:-}
+studies=("${@:3}")
+[ ${#studies[@]} -gt 0 ] || studies=(head_to_head calibration_ablation consistency window_and_features
+                                     time_offset imu_noise_told_wrong start_errors rolling_shutter)
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 duet=${DUET:-$root/build/release/bin/duet}
 mkdir -p "$out"
@@ -20,8 +24,7 @@ TEXT
 
 These are the quick versions: a first look, of few seeds. Where they say that nothing can be said, more seeds may.
 TEXT
-for study in head_to_head calibration_ablation consistency window_and_features time_offset \
-             imu_noise_told_wrong start_errors rolling_shutter; do
+for study in "${studies[@]}"; do
   # shellcheck disable=SC2086  # no argument where it is empty
   "$duet" study "$root/configs/studies/$study.yaml" $quick --jobs 2 --quiet --out "$out/$study" >&2
   "$duet" verify "$out/$study" >&2
