@@ -15,7 +15,7 @@ mkdir -p "$out"
 cat <<TEXT
 # Results of the shipped studies
 
-Made by \`test/evidence/studies.sh OUT${quick:+ $quick}\` from the records of each study; the same command makes
+Made by \`test/evidence/studies.sh OUT${quick:+ ${*:2}}\` from the records of each study; the same command makes
 them again. Every number can be derived once more from the records: \`duet verify OUT/STUDY\`.
 docs/studies.md says what the studies are, docs/statistics.md how to read the sentences, and the tables with
 their spreads are in \`OUT/STUDY/tables\`, the page to look at in \`OUT/STUDY/report.html\`.
