@@ -21,6 +21,12 @@ constexpr double kNeesTolerance = 0.25;
 constexpr double kConvergedShareOfPrior = 0.2;
 constexpr double kConvergedSigmas = 3.0;
 
+int CountOutsidePrior(const RigCalibration& estimate, const RigCalibration& told,
+                      const CalibrationLayout& layout, double sigmas) {
+  const Eigen::ArrayXd moved = BoxMinus(estimate, told, layout).array().abs();
+  return static_cast<int>((moved > sigmas * layout.PriorSigmas().array()).count());
+}
+
 double Rms(const Eigen::VectorXd& v) {
   return v.size() == 0 ? 0.0 : std::sqrt(v.squaredNorm() / static_cast<double>(v.size()));
 }
@@ -107,13 +113,15 @@ std::optional<double> CalibrationErrors::ConvergenceTime(
 }
 
 double CalibrationErrors::ShareOutsidePrior(const RigCalibration& told, double sigmas) const {
-  const Eigen::VectorXd prior = layout_.PriorSigmas();
   double outside = 0.0;
   for (const RigCalibration& estimate : estimates_) {
-    const Eigen::VectorXd moved = BoxMinus(estimate, told, layout_);
-    outside += static_cast<double>((moved.array().abs() > sigmas * prior.array()).count());
+    outside += CountOutsidePrior(estimate, told, layout_, sigmas);
   }
-  return outside / std::max<double>(1.0, static_cast<double>(estimates_.size() * prior.size()));
+  return outside / std::max<double>(1.0, static_cast<double>(estimates_.size()) * layout_.size());
+}
+
+int CalibrationErrors::CountOutsidePriorAtEnd(const RigCalibration& told, double sigmas) const {
+  return CountOutsidePrior(estimates_.back(), told, layout_, sigmas);
 }
 
 std::vector<CalibrationBlockSummary> SummarizeCalibration(

@@ -45,6 +45,8 @@ class CalibrationErrors {
   /// Samples in which a component is further from the told value than so many of its prior's
   /// standard deviations, as a share of all components and samples.
   [[nodiscard]] double ShareOutsidePrior(const RigCalibration& told, double sigmas) const;
+  /// Components of the last sample (not empty) that are that far off.
+  [[nodiscard]] int CountOutsidePriorAtEnd(const RigCalibration& told, double sigmas) const;
 
  private:
   CalibrationLayout layout_;

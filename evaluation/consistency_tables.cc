@@ -66,6 +66,11 @@ const char* NeesVerdict(const NeesCell& cell, double alpha) {
 
 std::string NeesSentence(const StudyGrid& grid, const std::vector<NeesCell>& cells, double alpha) {
   std::string text;
+  // Of many arms those that are refuted are named; the others are counted.
+  constexpr std::size_t kFewArms = 4;
+  const bool many = grid.arms().size() > kFewArms;
+  int others = 0;
+  int tests_of_others = 0;
   for (std::size_t a = 0; a < grid.arms().size(); ++a) {
     int tested = 0;
     std::map<std::string, int> verdicts;
@@ -78,6 +83,11 @@ std::string NeesSentence(const StudyGrid& grid, const std::vector<NeesCell>& cel
       if (cell.p_holm <= alpha && (worst == nullptr || off(cell) > off(*worst))) worst = &cell;
     }
     if (tested == 0) continue;
+    if (many && worst == nullptr) {
+      ++others;
+      tests_of_others += tested;
+      continue;
+    }
     text += (text.empty() ? "" : "; ") + ("the covariance of " + grid.arms()[a].name);
     if (worst == nullptr) {
       text += " is refuted in none of " + std::to_string(tested) + " tests";
@@ -93,6 +103,11 @@ std::string NeesSentence(const StudyGrid& grid, const std::vector<NeesCell>& cel
     text += " of " + std::to_string(tested) + " tests (worst: " + worst->metric.words + " on " +
             grid.streams()[worst->stream] + ", " + Number(worst->mean, 2) + " where " +
             Number(worst->dof, 0) + " is expected, " + PValueText(worst->p_holm) + ")";
+  }
+  if (others > 0) {
+    text += (text.empty() ? "the covariances of all " : "; those of the other ") +
+            std::to_string(others) + " are refuted in none of " + std::to_string(tests_of_others) +
+            " tests";
   }
   if (text.empty()) return "No NEES can be tested: it takes two runs with one.";
   text[0] = 'T';

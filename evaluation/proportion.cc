@@ -39,6 +39,13 @@ Band ClopperPearsonInterval(int events, int trials, double confidence) {
           Binomial::find_upper_bound_on_p(trials, events, left_out)};
 }
 
+double BinomialUpperTail(int events, int trials, double probability) {
+  CheckProportion(events, trials, probability);
+  if (events == 0) return 1.0;
+  const boost::math::binomial chance(trials, probability);
+  return boost::math::cdf(boost::math::complement(chance, events - 1));
+}
+
 double McNemarPValue(int only_first, int only_second) {
   CHECK(only_first >= 0 && only_second >= 0);
   const int pairs = only_first + only_second;

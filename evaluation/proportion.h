@@ -16,6 +16,10 @@ namespace duet {
 /// coverage is nowhere below `confidence`, and it is wider therefore.
 [[nodiscard]] Band ClopperPearsonInterval(int events, int trials, double confidence = 0.95);
 
+/// The probability that as many events as this or more are seen where each trial has one with
+/// `probability` (in (0, 1)): small where chance does not explain them.
+[[nodiscard]] double BinomialUpperTail(int events, int trials, double probability);
+
 /// The exact form of McNemar's test (1947): pairs of runs of which the one alone failed, or the
 /// other alone. The probability, of both sides, of a split as uneven as this where each is as
 /// likely; 1 where there are none.

@@ -49,6 +49,9 @@ struct MeasureVotes {
   int measures = 0;
 };
 
+/// Of many pairs those of which a measure says something are named; the others are counted.
+constexpr std::size_t kFewPairs = 3;
+
 std::string VotesText(const MeasureVotes& votes, const ArmComparison& arms, const char* family) {
   const std::string of = "of " + std::to_string(votes.measures) + " measures of the " + family;
   if (votes.first > 0 && votes.second > 0) {
@@ -78,6 +81,7 @@ std::vector<StudyTable> SensitivityTables(const StudyGrid& grid, const StudyTabl
                    {.title = "better", .is_text = true}};
   std::vector<std::string> clauses;
   for (const MeasureFamily& family : families) {
+    int undecided = 0;
     std::vector<MetricComparison> comparisons;
     for (const Metric& metric : family.metrics) {
       comparisons.push_back(CompareArms(grid, metric, options));
@@ -104,7 +108,17 @@ std::vector<StudyTable> SensitivityTables(const StudyGrid& grid, const StudyTabl
                        std::move(ratio), PValueCell(overall.p_holm),
                        TextCell(DecisionText(arms, overall.decision))}});
       }
-      if (votes.measures > 1) clauses.push_back(VotesText(votes, named, family.words));
+      if (votes.measures < 2) continue;
+      if (comparisons.front().arms.size() > kFewPairs && votes.first + votes.second == 0) {
+        ++undecided;
+      } else {
+        clauses.push_back(VotesText(votes, named, family.words));
+      }
+    }
+    if (undecided > 0) {
+      clauses.push_back("of all measures of the " + std::string(family.words) +
+                        " none says who is better in " + std::to_string(undecided) +
+                        " of the pairs");
     }
   }
   if (clauses.empty()) return {};

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/support/numeric_text.h"
+#include "evaluation/proportion.h"
 #include "evaluation/statistics.h"
 #include "evaluation/text_table.h"
 
@@ -11,6 +12,8 @@ namespace {
 
 constexpr double kSettleSeconds = 2.0;
 constexpr double kPriorSigmas = 3.0;
+/// How often a told error that is drawn from its prior is larger than that.
+constexpr double kOutsidePriorByChance = 0.0026998;
 
 /// What a cell's runs say together.
 struct CellSummary {
@@ -22,6 +25,11 @@ struct CellSummary {
   /// Of all numbers, instants and runs: how often the estimate is further than kPriorSigmas of its
   /// prior from the told value. Told errors drawn from the prior make it 0.0027 at most.
   double outside_prior = 0.0;
+  /// The same at the end of each run, failed ones too: how many of the numbers of all runs, and the
+  /// probability of as many or more where an estimate is as far off as its told value was drawn.
+  int outside_at_end = 0;
+  int numbers_at_end = 0;
+  double chance_of_outside = 1.0;
   std::optional<BlockConsistency> pose;
   std::vector<CalibrationBlockSummary> calibration;
 };
@@ -37,6 +45,10 @@ CellSummary SummarizeCell(const AblationCell& cell, bool consistency,
     frame_ms.push_back(run.frame_ms_median);
     summary.coverage_s = first ? run.coverage_s : std::min(summary.coverage_s, run.coverage_s);
     first = false;
+    if (!run.calibration.empty()) {
+      summary.outside_at_end += run.calibration.CountOutsidePriorAtEnd(run.told_rig, kPriorSigmas);
+      summary.numbers_at_end += run.calibration.layout().size();
+    }
     if (run.failed) {
       ++summary.failed;
       continue;
@@ -46,6 +58,10 @@ CellSummary SummarizeCell(const AblationCell& cell, bool consistency,
     if (!std::isfinite(run.ate_position_m)) continue;  // a truth that stands still
     position_m.push_back(run.ate_position_m);
     orientation_deg.push_back(run.ate_orientation_deg);
+  }
+  if (summary.numbers_at_end > 0) {
+    summary.chance_of_outside =
+        BinomialUpperTail(summary.outside_at_end, summary.numbers_at_end, kOutsidePriorByChance);
   }
   summary.position_m = Summarize(position_m);
   summary.orientation_deg = Summarize(orientation_deg);
@@ -75,11 +91,10 @@ nlohmann::ordered_json Spread(const ErrorSummary& errors) {
 
 std::string AblationText(const std::vector<AblationCell>& cells, bool consistency,
                          const PredictedSigma& predicted_sigma) {
-  std::vector<std::string> header = {"estimated",  "runs",
-                                     "failed",     "ATE [m]",
-                                     "p95 [m]",    "ATE [deg]",
-                                     "p95 [deg]",  "least covered [s]",
-                                     "frame [ms]", "off > 3 sigma [%]"};
+  std::vector<std::string> header = {
+      "estimated",  "runs",          "failed",    "ATE [m]",
+      "p95 [m]",    "ATE [deg]",     "p95 [deg]", "least covered [s]",
+      "frame [ms]", "off > 3 sigma", "by chance"};
   if (consistency) header.emplace_back("pose NEES (6)");
   TextTable table(header);
   std::string details;
@@ -88,16 +103,18 @@ std::string AblationText(const std::vector<AblationCell>& cells, bool consistenc
     const CellSummary summary = SummarizeCell(cell, consistency, predicted_sigma);
     if (estimator == nullptr || *estimator != cell.estimator) table.AddSection(cell.estimator);
     estimator = &cell.estimator;
-    std::vector<std::string> row = {cell.variant.name,
-                                    std::to_string(cell.runs.size()),
-                                    std::to_string(summary.failed),
-                                    Number(summary.position_m.median, 4),
-                                    Number(summary.position_m.p95, 4),
-                                    Number(summary.orientation_deg.median, 3),
-                                    Number(summary.orientation_deg.p95, 3),
-                                    Number(summary.coverage_s, 1),
-                                    Number(summary.frame_ms.median, 2),
-                                    Number(100.0 * summary.outside_prior, 2)};
+    std::vector<std::string> row = {
+        cell.variant.name,
+        std::to_string(cell.runs.size()),
+        std::to_string(summary.failed),
+        Number(summary.position_m.median, 4),
+        Number(summary.position_m.p95, 4),
+        Number(summary.orientation_deg.median, 3),
+        Number(summary.orientation_deg.p95, 3),
+        Number(summary.coverage_s, 1),
+        Number(summary.frame_ms.median, 2),
+        std::to_string(summary.outside_at_end) + " of " + std::to_string(summary.numbers_at_end),
+        Number(summary.chance_of_outside, 3)};
     if (consistency) row.push_back(summary.pose ? Number(summary.pose->mean, 2) : "-");
     table.AddRow(row);
     if (!summary.calibration.empty()) {
@@ -122,7 +139,11 @@ nlohmann::ordered_json AblationJson(const std::vector<AblationCell>& cells, bool
                                     {"ate_orientation_deg", Spread(summary.orientation_deg)},
                                     {"least_coverage_s", summary.coverage_s},
                                     {"frame_ms", Spread(summary.frame_ms)},
-                                    {"outside_3_prior_sigmas", summary.outside_prior}};
+                                    {"outside_3_prior_sigmas", summary.outside_prior},
+                                    {"outside_3_prior_sigmas_at_end",
+                                     {{"count", summary.outside_at_end},
+                                      {"of", summary.numbers_at_end},
+                                      {"by_chance", summary.chance_of_outside}}}};
     if (summary.pose) {
       entry["pose_nees"] = {{"mean", summary.pose->mean},
                             {"median_instant", summary.pose->median_instant},

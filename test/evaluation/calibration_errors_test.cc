@@ -74,6 +74,8 @@ TEST(CalibrationErrors, CountsWhatLeavesThePrior) {
   errors.Add(0.0, Times(0.031, 0.0), Diagonal(1, 1));  // 3.1 sigma
   errors.Add(1.0, Times(0.029, 0.0), Diagonal(1, 1));
   EXPECT_NEAR(errors.ShareOutsidePrior(told, 3.0), 0.25, 1e-12);
+  EXPECT_EQ(errors.CountOutsidePriorAtEnd(told, 3.0), 0);
+  EXPECT_EQ(errors.CountOutsidePriorAtEnd(told, 2.8), 1);
 }
 
 // 200 runs whose errors have the reported covariance, then ones three times as large.

@@ -151,6 +151,13 @@ TEST(Proportion, AgreesWithR) {
   EXPECT_EQ(McNemarPValue(0, 0), 1.0);
 }
 
+TEST(BinomialUpperTail, AgreesWithSumsByHand) {
+  EXPECT_EQ(BinomialUpperTail(0, 20, 0.1), 1.0);
+  EXPECT_NEAR(BinomialUpperTail(1, 20, 0.1), 1.0 - std::pow(0.9, 20), 1e-14);
+  EXPECT_NEAR(BinomialUpperTail(2, 3, 0.25), 3 * 0.0625 * 0.75 + 0.015625, 1e-14);
+  EXPECT_NEAR(BinomialUpperTail(20, 20, 0.1), 1e-20, 1e-32);
+}
+
 TEST(Holm, AgreesWithR) {
   for (const auto& row : ReferenceRows("holm_r.csv")) {
     const std::vector<double> p = ReferenceNumbers(row[1]);

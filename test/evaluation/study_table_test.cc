@@ -281,6 +281,30 @@ TEST(StudyTable, StartsInOneRecordingAreOneObservation) {
   EXPECT_EQ(all.cells[5].value, 1.0 / 64.0);
 }
 
+TEST(StudyTable, OfManyArmsSentencesNameThoseOfWhichTheySaySomething) {
+  StudyResult study = MakeStudy({});
+  const std::vector<StudyRun> runs = study.runs;
+  study.runs.clear();
+  for (const char* condition : {"a", "b", "c", "d"}) {
+    for (StudyRun run : runs) {
+      run.perturbation = condition;
+      run.metrics.emplace_back("ate.position_m.se3", run.metrics[0].second);
+      // One of the eight arms is refuted.
+      if (condition == std::string("c") && run.estimator == "window") run.metrics[2].second *= 2.0;
+      study.runs.push_back(std::move(run));
+    }
+  }
+  StudyTableOptions options;
+  options.metrics = {"ate.position_m", "nees.pose"};
+  options.bootstrap_resamples = 100;
+  const auto tables = MakeStudyTables(study, options);
+  const std::string nees = TableNamed(tables, "nees").verdict;
+  EXPECT_THAT(nees, HasSubstr("The covariance of window"));
+  EXPECT_THAT(nees, HasSubstr("; those of the other 7 are refuted in none of 21 tests."));
+  EXPECT_EQ(TableNamed(tables, "sensitivity").verdict,
+            "Of all measures of the position none says who is better in 4 of the pairs.");
+}
+
 TEST(StudyTable, NeesStandsBesideItsBand) {
   SyntheticStudy synthetic;
   StudyResult study = MakeStudy(synthetic);

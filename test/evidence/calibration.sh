@@ -47,5 +47,5 @@ for motion in straight_line pure_rotation one_axis_rotation standstill planar_dr
   "$duet" ablate --simulate room_easy "${everything[@]}" "${minute[@]}" --states all \
     --design none_and_all --set "simulation.trajectory=$motion" \
     --set simulation.t_d_s=0.005 --set simulation.t_r_s=0.02 \
-    --seeds "1..$(((seeds + 9) / 10))" --jobs 2 --quiet --out "$out/$motion"
+    --seeds "1..$(((seeds + 4) / 5))" --jobs 2 --quiet --out "$out/$motion"
 done
