@@ -4,11 +4,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
+#include <utility>
 
-#include "common/dataset/csv_reader.h"
 #include "common/support/input_error.h"
 #include "common/support/text_file.h"
 #include "experiments/figures/figure_style.h"
+#include "experiments/study/study_records.h"
 
 namespace duet {
 namespace fs = std::filesystem;
@@ -59,16 +60,20 @@ FigureRun StudyRecord(const fs::path& folder) {
   return run;
 }
 
+void ReadOutcome(const nlohmann::ordered_json& manifest, StudyRun* where) {
+  where->tracks_sha256 = JsonText(manifest, "tracks_sha256");
+  if (const auto outcome = manifest.find("outcome"); outcome != manifest.end()) {
+    where->failed = JsonText(*outcome, "status") != "done";
+    where->reason = JsonText(*outcome, "reason");
+  }
+}
+
 FigureRun ReadRun(const fs::path& folder) {
   const nlohmann::ordered_json manifest = ReadJsonFile(folder / "manifest.json");
   FigureRun run =
       fs::exists(folder / "study.json") ? StudyRecord(folder) : PlainRun(folder, manifest);
   run.where.id = folder.filename();
-  run.where.tracks_sha256 = JsonText(manifest, "tracks_sha256");
-  if (const auto outcome = manifest.find("outcome"); outcome != manifest.end()) {
-    run.where.failed = JsonText(*outcome, "status") != "done";
-    run.where.reason = JsonText(*outcome, "reason");
-  }
+  ReadOutcome(manifest, &run.where);
   return run;
 }
 
@@ -90,35 +95,24 @@ bool BeforeInGrid(const FigureRun& a, const FigureRun& b) {
   return key(a) < key(b);
 }
 
-// The cells of a study's grid, by its plan.csv where it has one, else (a folder made by hand) by
-// what its records say.
+// The cells of a study's grid, by its plan.csv where it has one (cells may share a record), else (a
+// folder made by hand) by what its records say.
 std::vector<FigureRun> StudyRuns(const fs::path& folder) {
   std::vector<FigureRun> runs;
-  const fs::path plan = folder / "plan.csv";
-  if (!fs::exists(plan)) {
+  if (!fs::exists(folder / "plan.csv")) {
     for (const fs::path& record : FoldersIn(folder / "runs")) runs.push_back(ReadRun(record));
     std::stable_sort(runs.begin(), runs.end(), BeforeInGrid);
     return runs;
   }
-  const std::string csv = ReadTextFile(plan);
-  CsvReader reader(csv, plan,
-                   {{"id", "stream_id", "stream", "estimator", "setting", "perturbation", "seed"}});
-  while (reader.Next()) {
-    const fs::path record = folder / "runs" / std::string(reader.Text(0));
+  for (StudyRun& cell : ReadPlan(folder)) {
+    const fs::path record = folder / "runs" / cell.id;
+    FigureRun run{.folder = {}, .study = folder, .where = std::move(cell), .label = {}};
     if (IsRun(record)) {
-      runs.push_back(ReadRun(record));
-      continue;
+      run.folder = record;
+      ReadOutcome(ReadJsonFile(record / "manifest.json"), &run.where);
+    } else {
+      run.where.failed = true;
     }
-    FigureRun run{.folder = {}, .study = folder, .where = {}, .label = {}};
-    StudyRun& where = run.where;
-    where.id = reader.Text(0);
-    where.stream_id = reader.Text(1);
-    where.stream = reader.Text(2);
-    where.estimator = reader.Text(3);
-    where.setting = reader.Text(4);
-    where.perturbation = reader.Text(5);
-    where.seed = static_cast<int>(reader.Unsigned(6));
-    where.failed = true;
     runs.push_back(std::move(run));
   }
   return runs;

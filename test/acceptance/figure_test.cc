@@ -14,12 +14,6 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// Skips a test, loudly, on a machine without a program.
-#define SKIP_WITHOUT_PROGRAM(program, package)                                               \
-  if (std::system("command -v " program " >/dev/null 2>&1") != 0) {                          \
-    GTEST_SKIP() << "SKIPPED: no " program " on this machine (apt-get install " package ")"; \
-  }
-
 std::string OutputOf(const std::string& command) {
   std::string text;
   std::FILE* pipe = popen(command.c_str(), "r");

@@ -60,6 +60,10 @@ ProgramResult RunShell(const std::string& command) {
   return RunProgram({"/bin/sh", "-c", "export DUET='" DUET_PROGRAM "'\n" + command}, nullptr, 0);
 }
 
+bool IsInstalled(const std::string& program) {
+  return RunShell("command -v " + program).status == 0;
+}
+
 TemporaryFolder::TemporaryFolder() {
   std::string name = fs::temp_directory_path() / "duet-acceptance-XXXXXX";
   if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");

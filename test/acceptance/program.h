@@ -6,6 +6,13 @@
 #include <string>
 #include <vector>
 
+/// Skips a test, loudly, on a machine without a program that `packages` of the distribution bring.
+#define SKIP_WITHOUT_PROGRAM(program, packages)                        \
+  if (!::duet::IsInstalled(program)) {                                 \
+    GTEST_SKIP() << "SKIPPED: no " << (program)                        \
+                 << " on this machine (apt-get install " packages ")"; \
+  }
+
 namespace duet {
 
 /// What a run of the program left behind.
@@ -22,6 +29,8 @@ struct ProgramResult {
                                     int signal = SIGINT);
 /// The same for a command of the shell, in which "$DUET" is the built program.
 [[nodiscard]] ProgramResult RunShell(const std::string& command);
+
+[[nodiscard]] bool IsInstalled(const std::string& program);
 
 /// A folder that goes with the object.
 class TemporaryFolder {

@@ -16,15 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool IsInstalled(const std::string& program) {
-  return RunShell("command -v " + program).status == 0;
-}
-
-#define SKIP_WITHOUT_PROGRAM(program)                                                \
-  if (!IsInstalled(program)) {                                                       \
-    GTEST_SKIP() << "SKIPPED: " << (program) << " is not installed on this machine"; \
-  }
-
 class StudyEnginesTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -79,7 +70,7 @@ TEST_F(StudyEnginesTest, TwoHostsAtOnceTearAndDuplicateNothing) {
 }
 
 TEST_F(StudyEnginesTest, ByGnuParallelItIsTheSame) {
-  SKIP_WITHOUT_PROGRAM("parallel");
+  SKIP_WITHOUT_PROGRAM("parallel", "parallel");
   const ProgramResult result =
       RunShell("'" DUET_SOURCE "/experiments/engines/gnu_parallel.sh' 2 '" + study_ + "' --out '" +
                out_ + "' --quiet");
@@ -110,7 +101,7 @@ class SlurmOnOneMachine {
 };
 
 TEST_F(StudyEnginesTest, ByASlurmArrayItIsTheSame) {
-  SKIP_WITHOUT_PROGRAM("slurmctld");
+  SKIP_WITHOUT_PROGRAM("slurmctld", "slurm-wlm");
   const SlurmOnOneMachine slurm(folder_ / "slurm");
   if (!slurm.started()) {
     GTEST_SKIP() << "SKIPPED: Slurm's daemons cannot be started here: " << slurm.why();
