@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "backends/failure_rule.h"
 #include "common/config/options.h"
 #include "common/dataset/track_stream.h"
 #include "common/imu/imu_sample.h"
@@ -58,6 +59,7 @@ struct SharedOptions {
   ImuNoiseFactors imu_noise_factors;
   CalibrationPriors calibration;
   StandstillOptions standstill;
+  FailureRule failure;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -91,6 +93,7 @@ struct SharedOptions {
             "Which calibration states are estimated, with what prior.");
     v.Group("standstill", &standstill,
             "The standstill measurement: zero velocity, mean rate zero.");
+    v.Group("failure", &failure, "When a run counts as failed.");
   }
 };
 
@@ -102,10 +105,14 @@ struct EstimatorSetup {
   SharedOptions shared;
 };
 
-/// The first state and its covariance (order theta, p, v, b_g, b_a), the same for every estimator.
+/// The first state and how far off it may be, the same for every estimator. Its error (order theta,
+/// p, v, b_g, b_a) is one of `covariance`, independent of the calibration's, plus
+/// `calibration_gain` times the error of the estimated calibration.
 struct InitialCondition {
   InertialState state;
   Matrix15d covariance = Matrix15d::Identity();
+  /// 15 x the size of the calibration's layout; empty: zero.
+  Eigen::MatrixXd calibration_gain = {};
 };
 
 enum class EstimatorStatus { kInitializing, kTracking, kDeadReckoning, kFailed };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,12 @@
 #include "backends/estimator.h"
 
 namespace duet {
+
+/// Within which the estimators hold the times (shared.max_abs_t_d_s, shared.max_abs_t_r_s).
+struct TimeBounds {
+  double max_abs_t_d_s = std::numeric_limits<double>::infinity();
+  double max_abs_t_r_s = std::numeric_limits<double>::infinity();
+};
 
 /// What one run says of each number of the estimated calibration, in plain words: what it was told,
 /// what it found, how well, and whether the recording said anything about it at all.
@@ -18,6 +25,8 @@ class CalibrationWatch {
   /// An estimate further from its told value than this many of its prior's standard deviations has
   /// left it: the prior, the model or the recording is wrong.
   static constexpr double kPriorSigmas = 5.0;
+  /// One that was not observed, and lies so far from its told value all the same, was pushed there.
+  static constexpr double kOddSigmas = 3.0;
 
   struct Number {
     std::string name;  ///< "cam0.p_CB.x"
@@ -28,10 +37,11 @@ class CalibrationWatch {
     bool observed = false;
     double left_prior_after_s = -1.0;  ///< first time beyond kPriorSigmas; negative: never
     double largest_sigmas = 0.0;       ///< largest distance from the told value, in prior sigmas
+    double at_bound_after_s = -1.0;  ///< first time that it was held at its bound; negative: never
   };
 
   /// `told`: the rig that the estimator was told.
-  CalibrationWatch(CalibrationLayout layout, RigCalibration told);
+  CalibrationWatch(CalibrationLayout layout, RigCalibration told, const TimeBounds& bounds = {});
 
   /// An output with a state and a covariance.
   void Add(const EstimatorOutput& output);
@@ -47,6 +57,8 @@ class CalibrationWatch {
   Eigen::VectorXd sigma_;
   Eigen::VectorXd largest_sigmas_;
   Eigen::VectorXd left_after_s_;
+  Eigen::VectorXd bound_;  // infinite where there is none
+  Eigen::VectorXd at_bound_after_s_;
   Timestamp first_ = 0;
 };
 
@@ -59,7 +71,7 @@ class CalibrationWatch {
 [[nodiscard]] std::vector<CalibrationWatch::Number> ReadCalibrationCsv(std::string_view csv,
                                                                        const std::string& file);
 
-/// A sentence for each number that left its prior.
+/// A sentence for each number that left its prior or was held at its bound.
 [[nodiscard]] std::vector<std::string> CalibrationWarnings(
     const std::vector<CalibrationWatch::Number>& numbers);
 

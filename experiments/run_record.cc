@@ -37,16 +37,18 @@ int ObservationCount(const TrackFrameSet& frames) {
 }  // namespace
 
 RunRecorder::RunRecorder(const std::filesystem::path& folder, const CalibrationLayout& layout,
-                         const RigCalibration& told, bool with_covariance)
+                         const RigCalibration& told, const TimeBounds& bounds, bool with_covariance)
     : folder_(folder),
       layout_(layout),
-      calibration_(layout, told),
+      calibration_(layout, told, bounds),
       trajectory_(folder / "trajectory.tum"),
       states_(folder / "states.csv"),
       features_(folder / "features.csv") {
   trajectory_.Write("# timestamp [s] tx ty tz [m] qx qy qz qw: the body (IMU) in G\n");
   std::string header = kStateColumns;
-  const std::vector<std::string> names = layout_.ComponentNames();
+  std::vector<std::string> names = layout_.ComponentNames();
+  const std::vector<std::string> units = layout_.ComponentUnits();
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] += " [" + units[i] + "]";
   for (const std::string& name : names) header += "," + name;
   header += kSigmaColumns;
   for (const std::string& name : names) header += ",sigma_" + name;

@@ -34,7 +34,7 @@ class RunRecorder {
  public:
   /// `told`: the rig that the estimator was told.
   RunRecorder(const std::filesystem::path& folder, const CalibrationLayout& layout,
-              const RigCalibration& told, bool with_covariance);
+              const RigCalibration& told, const TimeBounds& bounds, bool with_covariance);
 
   /// A frame that came before the start.
   void AddWaiting(const TrackFrameSet& frames);

@@ -44,6 +44,31 @@ Eigen::Quaterniond WithoutYaw(const Eigen::Vector3d& up_B) {
   return Eigen::Quaterniond(R_GB).normalized();
 }
 
+// What errors of T_s and T_a make of the first state: the readings are what they are, so that a
+// wrong T_s a_B is taken for a bias of the gyroscope, and of a wrong T_a a_B the part along gravity
+// for one of the accelerometer, the part across for a tilt.
+Eigen::MatrixXd GainOfInexactMatrices(const CalibrationLayout& layout, const Eigen::Vector3d& a_B,
+                                      const Eigen::Matrix3d& R_GB) {
+  Eigen::MatrixXd gain = Eigen::MatrixXd::Zero(15, layout.size());
+  const Eigen::Vector3d up_B = a_B.normalized();
+  for (const CalibrationLayout::Entry& entry : layout.entries()) {
+    const bool of_rate = entry.block == CalibrationBlock::kTs;
+    if (!of_rate && entry.block != CalibrationBlock::kTa) continue;
+    for (int k = 0; k < entry.size; ++k) {
+      const int row = entry.number[k] / 3;
+      const Eigen::Vector3d read = a_B[entry.number[k] % 3] * Eigen::Vector3d::Unit(row);
+      auto column = gain.col(entry.offset + k);
+      if (of_rate) {
+        column.segment<3>(9) = -read;
+      } else {
+        column.head<3>() = R_GB * up_B.cross(read) / a_B.norm();
+        column.segment<3>(12) = -up_B * up_B.dot(read);
+      }
+    }
+  }
+  return gain;
+}
+
 }  // namespace
 
 RestInitializer::RestInitializer(const EstimatorSetup& setup, const InitializationOptions& options)
@@ -87,14 +112,8 @@ InitializationResult RestInitializer::Update(const TrackFrameSet& frames, const 
   const Eigen::Matrix3d R_final = result.state.nav.R_GB.toRotationMatrix();
   const Eigen::Vector3d up_G = -setup_.g_G / g;
   const double lateral = options_.sigma_b_a_m_per_s2;
-  // T matrices that are themselves uncertain turn gravity into readings that look like biases. The
-  // start covariance has no part for how the two go together: it counts them as independent, which
-  // is the wider choice.
-  const CalibrationPriors& priors = setup_.shared.calibration;
-  const double force_by_T_a = priors.T_a.estimated ? g * priors.T_a.sigma : 0.0;
-  const double rate_by_T_s = priors.T_s.estimated ? g * priors.T_s.sigma : 0.0;
   // Vibration is no white noise; its mean over half a second is trusted to 0.02 m/s^2 at best.
-  const double vertical = std::hypot(force.sigma, 0.02, force_by_T_a);
+  const double vertical = std::hypot(force.sigma, 0.02);
   Matrix15d& P = result.covariance;
   P.setZero();
   const Eigen::Matrix3d bias_G =
@@ -106,7 +125,7 @@ InitializationResult RestInitializer::Update(const TrackFrameSet& frames, const 
   P.block<3, 3>(0, 0) = J_theta_bias * bias_B * J_theta_bias.transpose();
   P.block<3, 3>(0, 12) = J_theta_bias * bias_B;
   P.block<3, 3>(12, 0) = P.block<3, 3>(0, 12).transpose();
-  const double tilt_noise = std::hypot(force.sigma / g, 1e-3, force_by_T_a / g);
+  const double tilt_noise = std::hypot(force.sigma / g, 1e-3);
   P.block<3, 3>(0, 0) +=
       tilt_noise * tilt_noise * Eigen::Matrix3d::Identity() +
       (options_.sigma_yaw_rad * options_.sigma_yaw_rad - tilt_noise * tilt_noise) * up_G *
@@ -114,9 +133,10 @@ InitializationResult RestInitializer::Update(const TrackFrameSet& frames, const 
   P.block<3, 3>(3, 3).diagonal().setConstant(options_.sigma_position_m * options_.sigma_position_m);
   P.block<3, 3>(6, 6).diagonal().setConstant(setup_.shared.standstill.velocity_sigma_m_per_s *
                                              setup_.shared.standstill.velocity_sigma_m_per_s);
-  const double gyro = std::hypot(
-      std::min(options_.sigma_b_g_rad_per_s, std::hypot(omega.sigma, 1e-3)), rate_by_T_s);
+  const double gyro = std::min(options_.sigma_b_g_rad_per_s, std::hypot(omega.sigma, 1e-3));
   P.block<3, 3>(9, 9).diagonal().setConstant(gyro * gyro);
+  result.calibration_gain =
+      GainOfInexactMatrices(CalibrationLayout(setup_.shared.calibration, setup_.rig), a_B, R_final);
   return result;
 }
 

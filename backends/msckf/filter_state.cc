@@ -33,8 +33,16 @@ void FilterState::Start(const InitialCondition& initial) {
   clones_.clear();
   P_.setZero();
   P_.topLeftCorner<kNavSize, kNavSize>() = initial.covariance;
-  P_.diagonal().segment(CalibrationOffset(), layout_.size()) =
-      layout_.PriorSigmas().array().square();
+  const int at = CalibrationOffset();
+  const int size = layout_.size();
+  const Eigen::VectorXd variances = layout_.PriorSigmas().cwiseAbs2();
+  P_.diagonal().segment(at, size) = variances;
+  if (const Eigen::MatrixXd& gain = initial.calibration_gain; gain.size() > 0) {
+    const Eigen::MatrixXd cross = gain * variances.asDiagonal();
+    P_.block(0, at, kNavSize, size) = cross;
+    P_.block(at, 0, size, kNavSize) = cross.transpose();
+    P_.topLeftCorner<kNavSize, kNavSize>() += cross * gain.transpose();
+  }
 }
 
 int FilterState::CloneIndex(std::uint64_t id) const {

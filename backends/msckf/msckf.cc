@@ -17,8 +17,6 @@ namespace {
 /// before; the test only guards against a verdict that contradicts the filter grossly.
 constexpr double kStandstillGateProbability = 0.9999;
 constexpr int kStandstillRows = 6;
-/// Frames without a usable IMU interval for so long end the run, as in the window estimator.
-constexpr double kLongestSkipSeconds = 1.0;
 
 }  // namespace
 
@@ -75,7 +73,7 @@ bool Msckf::BeginFrame(const TrackFrameSet& frames, Timestamp instant) {
     Skip("the IMU does not cover the frame's interval");
   } else if (imu_.LongestGap(previous, instant) > setup_.shared.max_imu_gap_s) {
     // Every later interval holds the gap too.
-    if (SecondsBetween(previous, instant) > kLongestSkipSeconds) {
+    if (SecondsBetween(previous, instant) > setup_.shared.failure.max_imu_outage_s) {
       Fail("the IMU has a gap that no frame reaches over");
     } else {
       Skip("the IMU has a gap in the frame's interval");
@@ -247,17 +245,13 @@ const EstimatorOutput& Msckf::Report() {
 }
 
 void Msckf::CheckHealth() {
-  const InertialState& inertial = state_.inertial();
   const Eigen::Ref<const Eigen::MatrixXd> P = state_.P();
-  if (!inertial.nav.p_GB.allFinite() || !inertial.nav.v_GB.allFinite() ||
-      !inertial.nav.R_GB.coeffs().allFinite() || !inertial.biases.b_g.allFinite() ||
-      !inertial.biases.b_a.allFinite() || !P.diagonal().allFinite()) {
-    Fail("the state is not finite");
-  } else if ((P.diagonal().array() < 0.0).any()) {
-    Fail("the covariance is not positive semidefinite");
-  } else if (inertial.nav.v_GB.norm() > options_.max_velocity_m_per_s) {
-    Fail("the velocity is " + std::to_string(inertial.nav.v_GB.norm()) + " m/s");
+  std::string failure = FailureOf(state_.inertial(), setup_.shared.failure);
+  if (failure.empty() && !P.diagonal().allFinite()) failure = "the covariance is not finite";
+  if (failure.empty() && (P.diagonal().array() < 0.0).any()) {
+    failure = "the covariance is not positive semidefinite";
   }
+  if (!failure.empty()) Fail(failure);
 }
 
 void Msckf::Fail(const std::string& reason) {

@@ -20,7 +20,6 @@ struct MsckfOptions {
   bool remove_outliers = true;
   double outlier_probability = 0.9999;
   int dead_reckoning_after_frames = 20;
-  double max_velocity_m_per_s = 100.0;
   TransitionRule transition = TransitionRule::kDelta;
 
   template <class Visitor>
@@ -77,8 +76,6 @@ struct MsckfOptions {
              .unit = "frames",
              .min = 1,
              .max = 1e6});
-    v.Field("max_velocity_m_per_s", &max_velocity_m_per_s,
-            {.doc = "A faster state is reported as a failure.", .unit = "m/s", .min = 1});
     v.Choice(
         "transition", &transition,
         {{"delta", TransitionRule::kDelta}, {"thesis_trapezoid", TransitionRule::kThesisTrapezoid}},

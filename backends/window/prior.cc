@@ -59,7 +59,7 @@ void DeviationFromOrigin(const std::vector<WindowFrame>& frames, const WindowPoi
   if (layout.size() > 0) deviation->tail(layout.size()) = BoxMinus(point.rig, rig_origin, layout);
 }
 
-WindowPrior StartPrior(const Matrix15d& covariance, const RigCalibration& rig,
+WindowPrior StartPrior(const InitialCondition& initial, const RigCalibration& rig,
                        const CalibrationLayout& layout) {
   constexpr double kSmallestVariance = 1e-18;
   WindowPrior prior;
@@ -69,7 +69,7 @@ WindowPrior StartPrior(const Matrix15d& covariance, const RigCalibration& rig,
   prior.root.J.setZero(n, n);
   prior.root.e.setZero(n);
 
-  Matrix15d floored = covariance;
+  Matrix15d floored = initial.covariance;
   floored.diagonal() = floored.diagonal().cwiseMax(kSmallestVariance);
   const Eigen::LLT<Matrix15d> llt(floored);
   CHECK(llt.info() == Eigen::Success) << "the first covariance is not positive definite";
@@ -77,6 +77,9 @@ WindowPrior StartPrior(const Matrix15d& covariance, const RigCalibration& rig,
   llt.matrixL().solveInPlace(J);
   prior.root.J.topLeftCorner<kFrameSize, kFrameSize>() = J;
   if (layout.size() > 0) {
+    if (initial.calibration_gain.size() > 0) {
+      prior.root.J.topRightCorner(kFrameSize, layout.size()) = -J * initial.calibration_gain;
+    }
     prior.root.J.diagonal().tail(layout.size()) =
         layout.PriorSigmas().cwiseMax(std::sqrt(kSmallestVariance)).cwiseInverse();
   }

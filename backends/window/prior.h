@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "backends/estimator.h"
 #include "backends/window/marginalization.h"
 #include "backends/window/window_state.h"
 
@@ -35,10 +36,9 @@ void DeviationFromOrigin(const std::vector<WindowFrame>& frames, const WindowPoi
                          const RigCalibration& rig_origin, const CalibrationLayout& layout,
                          Eigen::VectorXd* deviation);
 
-/// The first prior: frame 0's whole state with `covariance` (theta, p, v, b_g, b_a) and the
-/// calibration with its layout's standard deviations, at `rig`. A variance of zero is taken as
-/// 1e-18.
-[[nodiscard]] WindowPrior StartPrior(const Matrix15d& covariance, const RigCalibration& rig,
+/// The first prior: frame 0's whole state as `initial` says and the calibration with its layout's
+/// standard deviations, at `rig`. A variance of zero is taken as 1e-18.
+[[nodiscard]] WindowPrior StartPrior(const InitialCondition& initial, const RigCalibration& rig,
                                      const CalibrationLayout& layout);
 
 /// The prior of a quadratic over the whole window's error about the origins; blocks without

@@ -47,7 +47,7 @@ void WindowEstimator::Initialize(const InitialCondition& initial) {
   frame.pose_in_prior = frame.velocity_in_prior = frame.biases_in_prior = true;
   frames_.push_back(std::move(frame));
   last_aided_ = initial.state.instant;
-  prior_ = StartPrior(initial.covariance, rig_, layout_);
+  prior_ = StartPrior(initial, rig_, layout_);
 }
 
 void WindowEstimator::AddImu(const ImuSample& sample) { imu_.Add(sample); }
@@ -92,7 +92,7 @@ bool WindowEstimator::Accept(const TrackFrameSet& frames) {
     return false;
   }
   if (imu_.LongestGap(last, instant_) > setup_.shared.max_imu_gap_s) {
-    if (SecondsBetween(last, instant_) > options_.max_unaided_s) {
+    if (SecondsBetween(last, instant_) > setup_.shared.failure.max_imu_outage_s) {
       Fail("the IMU has a gap that no frame reaches over");
       return false;
     }
@@ -345,20 +345,8 @@ void WindowEstimator::JudgeDepths(const Eigen::MatrixXd& H) {
 }
 
 void WindowEstimator::CheckHealth() {
-  const InertialState& state = frames_.back().state;
-  const bool finite = state.nav.R_GB.coeffs().allFinite() && state.nav.p_GB.allFinite() &&
-                      state.nav.v_GB.allFinite() && state.biases.b_g.allFinite() &&
-                      state.biases.b_a.allFinite();
-  if (!finite) return Fail("the state is not finite");
-  if (state.nav.v_GB.norm() > options_.max_velocity_m_per_s) {
-    return Fail("the velocity is beyond max_velocity_m_per_s");
-  }
-  if (state.biases.b_g.norm() > options_.max_b_g_rad_per_s) {
-    return Fail("the gyroscope's bias is beyond max_b_g_rad_per_s");
-  }
-  if (state.biases.b_a.norm() > options_.max_b_a_m_per_s2) {
-    return Fail("the accelerometer's bias is beyond max_b_a_m_per_s2");
-  }
+  const std::string failure = FailureOf(frames_.back().state, setup_.shared.failure);
+  if (!failure.empty()) Fail(failure);
 }
 
 void WindowEstimator::Report() {
@@ -409,7 +397,10 @@ void WindowEstimator::Slide() {
     table_.DropFrame(dropped_frame_, linearizer_.now());
     frames_.erase(frames_.begin() + dropped_frame_);
   }
-  imu_.DropBefore(frames_.front().state.instant - ToNanoseconds(longest_rate_reach_s_));
+  // Behind every frame as far as its rates may reach, and as far as rest is judged.
+  const Timestamp judged = instant_ - ToNanoseconds(setup_.shared.standstill.window_s);
+  imu_.DropBefore(std::min(frames_.front().state.instant, judged) -
+                  ToNanoseconds(longest_rate_reach_s_));
 }
 
 std::optional<NavState> WindowEstimator::PredictAt(Timestamp t) const {

@@ -39,9 +39,6 @@ struct WindowOptions {
   bool first_estimates = true;
 
   double max_unaided_s = 1.0;
-  double max_velocity_m_per_s = 50.0;
-  double max_b_g_rad_per_s = 1.0;
-  double max_b_a_m_per_s2 = 5.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -140,16 +137,9 @@ struct WindowOptions {
             {.doc = "Priors and the covariance are linearized at the first estimates of frames."});
     v.Field("max_unaided_s", &max_unaided_s,
             {.doc = "Tracks without parallax (at the start, while hovering) may leave the window "
-                    "without landmarks for this long before it counts as dead reckoning; a gap in "
-                    "the IMU fails after it.",
+                    "without landmarks for this long before it counts as dead reckoning.",
              .unit = "s",
              .min = 0});
-    v.Field("max_velocity_m_per_s", &max_velocity_m_per_s,
-            {.doc = "Faster: failed.", .unit = "m/s", .min = 0.1});
-    v.Field("max_b_g_rad_per_s", &max_b_g_rad_per_s,
-            {.doc = "A larger gyroscope bias: failed.", .unit = "rad/s", .min = 1e-3});
-    v.Field("max_b_a_m_per_s2", &max_b_a_m_per_s2,
-            {.doc = "A larger accelerometer bias: failed.", .unit = "m/s^2", .min = 1e-2});
   }
 };
 

@@ -213,6 +213,17 @@ std::vector<std::string> CalibrationLayout::ComponentNames() const {
   return names;
 }
 
+std::vector<std::string> CalibrationLayout::ComponentUnits() const {
+  static constexpr std::array<const char*, kBlockKinds> kUnits = {
+      "", "rad s m^-1", "", "m", "rad", "px", "", "s", "s"};
+  std::vector<std::string> units;
+  for (const Entry& e : entries_) {
+    units.insert(units.end(), static_cast<std::size_t>(e.size),
+                 kUnits[static_cast<std::size_t>(e.block)]);
+  }
+  return units;
+}
+
 std::string BlockName(const CalibrationLayout::Entry& entry) {
   static constexpr std::array<const char*, kBlockKinds> kNames = {
       "T_g", "T_s", "T_a", "p_CB", "R_CB", "intrinsics", "distortion", "t_d", "t_r"};

@@ -82,6 +82,8 @@ class CalibrationLayout {
   [[nodiscard]] Eigen::VectorXd PriorSigmas() const;
   /// "cam0.p_CB.x", "t_d", ...: names for files, one a component.
   [[nodiscard]] std::vector<std::string> ComponentNames() const;
+  /// "m", "rad s m^-1", "" where it has none, ...: one a component, as files write them.
+  [[nodiscard]] std::vector<std::string> ComponentUnits() const;
 
  private:
   std::vector<Entry> entries_;

@@ -36,13 +36,37 @@ Unit UnitOf(const std::string& component) {
   return {component.rfind("T_s", 0) == 0 ? "rad/s per m/s²" : "-", 1.0};
 }
 
+/// A number over time, and its standard deviation.
+struct Course {
+  std::string component;  ///< its name without the unit
+  std::size_t value = 0;  ///< columns of the table
+  std::size_t sigma = 0;
+};
+
+// Those of the columns with a standard deviation that belong to the calibration.
+std::vector<Course> EstimatedCourses(const RecordTable& states) {
+  std::vector<Course> courses;
+  for (std::size_t i = 0; i < states.names.size(); ++i) {
+    const std::string& name = states.names[i];
+    if (name.starts_with("b_g_") || name.starts_with("b_a_")) continue;
+    const auto sigma = std::find(states.names.begin(), states.names.end(), "sigma_" + name);
+    if (sigma == states.names.end()) continue;
+    courses.push_back({name.substr(0, name.find(" [")), i,
+                       static_cast<std::size_t>(sigma - states.names.begin())});
+  }
+  return courses;
+}
+
+const Course* FindCourse(const std::vector<Course>& courses, const std::string& component) {
+  for (const Course& course : courses) {
+    if (course.component == component) return &course;
+  }
+  return nullptr;
+}
+
 std::vector<std::string> EstimatedComponents(const RecordTable& states) {
   std::vector<std::string> names;
-  for (const std::string& name : states.names) {
-    if (name.find('[') == std::string::npos && states.Find("sigma_" + name) != nullptr) {
-      names.push_back(name);
-    }
-  }
+  for (const Course& course : EstimatedCourses(states)) names.push_back(course.component);
   return names;
 }
 
@@ -133,9 +157,11 @@ Figure CalibrationFigure(const FigureInput& input) {
                 .height_mm = components.size() > 3 ? 21.0 : 28.0,
                 .share_x = component != components.back()};
     for (std::size_t n = 0; n < runs.size(); ++n) {
-      const std::vector<double>* values = states[n].Find(component);
-      const std::vector<double>* sigmas = states[n].Find("sigma_" + component);
-      if (values == nullptr || sigmas == nullptr || values->empty()) continue;
+      const std::vector<Course> courses = EstimatedCourses(states[n]);
+      const Course* course = FindCourse(courses, component);
+      if (course == nullptr || states[n].stamps.empty()) continue;
+      const std::vector<double>* values = &states[n].columns[course->value];
+      const std::vector<double>* sigmas = &states[n].columns[course->sigma];
       std::vector<double> t_s, value, low, high;
       for (std::size_t i = 0; i < values->size(); ++i) {
         t_s.push_back(SecondsBetween(start, states[n].stamps[i]));

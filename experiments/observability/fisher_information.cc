@@ -146,7 +146,8 @@ Eigen::MatrixXd FisherInformation::PriorInformation(double scale) const {
       widening.asDiagonal() * motion_.start_covariance * widening.asDiagonal();
   const Eigen::Index n = kFrameSize + layout_.size();
   InformationForm form{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
-  AddPrior(StartPrior(covariance, motion_.setup.rig, layout_), 1, layout_, &form);
+  AddPrior(StartPrior({.state = {}, .covariance = covariance}, motion_.setup.rig, layout_), 1,
+           layout_, &form);
   form.H.bottomRightCorner(layout_.size(), layout_.size()) /= scale * scale;
   return form.H;
 }

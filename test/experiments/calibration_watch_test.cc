@@ -53,6 +53,28 @@ TEST(CalibrationWatch, WarnsWithTheTimeWhereAnEstimateLeavesItsPrior) {
                                           testing::HasSubstr("after 1.50 s, up to 5.1")));
 }
 
+TEST(CalibrationWatch, SaysWhereAnEstimateIsHeldAtItsBound) {
+  CalibrationPriors priors;
+  priors.t_d.estimated = priors.t_r.estimated = true;
+  priors.t_d.sigma = 0.02;
+  CalibrationWatch watch(CalibrationLayout(priors, RigCalibration()), RigCalibration(),
+                         {.max_abs_t_d_s = 0.05, .max_abs_t_r_s = 0.05});
+  watch.Add(OutputAt(10.0, 0.049, 0.01, 0.001));
+  EXPECT_TRUE(CalibrationWarnings(watch.Numbers()).empty());
+  watch.Add(OutputAt(10.5, 0.05, 0.001, 0.001));
+  const std::vector<std::string> warnings = CalibrationWarnings(watch.Numbers());
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], testing::HasSubstr("t_d was held at its bound (shared.max_abs_t_d_s) "
+                                              "after 0.50 s"));
+  EXPECT_THAT(CalibrationWatchText(watch.Numbers()), testing::HasSubstr("HELD AT ITS BOUND"));
+}
+
+TEST(CalibrationWatch, DoesNotCallUnobservedWhatWasPushedFromItsPrior) {
+  CalibrationWatch watch = WatchTimes();
+  watch.Add(OutputAt(10.0, 0.04, 0.0095, 0.02));  // 4 sigma of the prior, sigma 0.95 of it
+  EXPECT_THAT(CalibrationWatchText(watch.Numbers()), testing::HasSubstr("at odds with its prior"));
+}
+
 TEST(CalibrationWatch, ItsFileReadsBackAndBadOnesAreRefused) {
   CalibrationWatch watch = WatchTimes();
   watch.Add(OutputAt(1.0, 0.06, 0.001, 0.02));
@@ -62,7 +84,7 @@ TEST(CalibrationWatch, ItsFileReadsBackAndBadOnesAreRefused) {
   ASSERT_EQ(read.size(), numbers.size());
   EXPECT_EQ(CalibrationCsv(read), csv);
   EXPECT_THROW((void)ReadCalibrationCsv("#x\n1,2,3\n", "calibration.csv"), InputError);
-  EXPECT_THROW((void)ReadCalibrationCsv("#x\n1,2,3,4,1,nan,0,t_d\n", "calibration.csv"),
+  EXPECT_THROW((void)ReadCalibrationCsv("#x\n1,2,3,4,1,nan,0,-1,t_d\n", "calibration.csv"),
                InputError);
 }
 

@@ -76,7 +76,7 @@ class EstimationLoopTest : public testing::Test {
     }
     TrackReplay frames(std::move(sets));
     EstimatorStart start(StartMode::kGroundTruth, setup_, InitializationOptions(), truth_, imu_);
-    RunRecorder recorder(folder_, estimator->layout(), RigCalibration(), true);
+    RunRecorder recorder(folder_, estimator->layout(), RigCalibration(), TimeBounds(), true);
     TimingLog timing;
     Progress progress("test", 4, "frames", true);
     const LoopOutcome outcome = RunEstimationLoop(

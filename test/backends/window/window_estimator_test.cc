@@ -169,6 +169,17 @@ TEST(WindowEstimator, EveryFrameModeKeepsConsecutiveFrames) {
   });
 }
 
+TEST(WindowEstimator, SeesRestInAWindowShorterThanTheTimeRestIsJudgedOver) {
+  Flight run = Easy(3.0, 1, "room_rest");
+  run.options.keyframes = WindowOptions::Keyframes::kEveryFrame;
+  run.options.max_frames = 6;  // 0.3 s; rest is judged over half a second
+  int at_rest = 0;
+  run.Go([&](const WindowEstimator&, const EstimatorOutput& output) {
+    at_rest += output.standstill ? 1 : 0;
+  });
+  EXPECT_GT(at_rest, 25);  // of 60 frames
+}
+
 TEST(WindowEstimator, DroppedFramesLeaveTheWholeImuDelta) {
   // The link over dropped frames is the composition of theirs: the same as integrating the whole
   // interval at once.
@@ -258,7 +269,7 @@ TEST(WindowEstimator, DeadReckonsWithoutFeaturesAndComesBack) {
 
 TEST(WindowEstimator, FailsWithAReasonAndStaysFailed) {
   Flight run = Easy(2.0);
-  run.options.max_velocity_m_per_s = 0.1;  // room_easy moves at 0.5 m/s
+  run.shared.failure.max_velocity_m_per_s = 0.1;  // room_easy moves at 0.5 m/s
   int failed = 0;
   const auto estimator = run.Go([&](const WindowEstimator&, const EstimatorOutput& output) {
     failed += output.status == EstimatorStatus::kFailed ? 1 : 0;

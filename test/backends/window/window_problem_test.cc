@@ -232,7 +232,8 @@ TEST(WindowProblem, SolverReachesTheNormalEquationsMinimum) {
       window.frames[2].at_rest_since_before = false;
       f.options.trust_region = method;
       f.options.linear_solver = solver;
-      const WindowPrior prior = StartPrior(1e-4 * Matrix15d::Identity(), window.rig, window.layout);
+      const WindowPrior prior = StartPrior(
+          {.state = {}, .covariance = 1e-4 * Matrix15d::Identity()}, window.rig, window.layout);
       for (WindowFrame& frame : window.frames) {
         frame.pose_in_prior = frame.velocity_in_prior = frame.biases_in_prior = false;
       }

@@ -57,8 +57,8 @@ void WriteTestRecord(const TestRecord& record, const fs::path& folder) {
   std::string states =
       "#timestamp [ns],frame [ns],status,q_GB_x [],q_GB_y [],q_GB_z [],q_GB_w [],p_GB_x [m],"
       "p_GB_y [m],p_GB_z [m],v_GB_x [m s^-1],v_GB_y [m s^-1],v_GB_z [m s^-1],b_g_x [rad s^-1],"
-      "b_g_y [rad s^-1],b_g_z [rad s^-1],b_a_x [m s^-2],b_a_y [m s^-2],b_a_z [m s^-2],t_d,"
-      "sigma_t_d\n";
+      "b_g_y [rad s^-1],b_g_z [rad s^-1],b_a_x [m s^-2],b_a_y [m s^-2],b_a_z [m s^-2],t_d [s],"
+      "sigma_t_d [s]\n";
   std::string truth =
       "#timestamp [ns],p_x,p_y,p_z,q_w,q_x,q_y,q_z,v_x,v_y,v_z,bg_x,bg_y,bg_z,ba_x,ba_y,ba_z\n";
   std::string covariance =

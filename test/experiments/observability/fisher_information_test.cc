@@ -92,7 +92,8 @@ Eigen::MatrixXd DenseCovariance(const ObservedMotion& motion, int window_frames,
     }
   }
   InformationForm form = equations.Take();
-  AddPrior(StartPrior(motion.start_covariance, setup.rig, layout), frame_count, layout, &form);
+  AddPrior(StartPrior({.state = {}, .covariance = motion.start_covariance}, setup.rig, layout),
+           frame_count, layout, &form);
   return NewestCovariance(form.H, layout.size());
 }
 
