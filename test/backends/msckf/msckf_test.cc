@@ -142,6 +142,18 @@ TEST(Msckf, HoldsItsPlaceAtRest) {
   EXPECT_GT(drift_m[false], 2.0 * drift_m[true]);
 }
 
+TEST(Msckf, FailsByTheSharedRule) {
+  const SimulatedRecording recording = Simulate(Room(1, 2.0));
+  SharedOptions shared;
+  shared.failure.max_velocity_m_per_s = 0.1;  // room_easy moves at 0.5 m/s
+  Feeder feeder(recording, shared);
+  feeder.StartDrawn(1);
+  EstimatorOutput last;
+  for (const TrackFrameSet& frames : recording.frames) last = feeder.Feed(frames);
+  EXPECT_EQ(last.status, EstimatorStatus::kFailed);
+  EXPECT_NE(last.reason.find("shared.failure.max_velocity_m_per_s"), std::string::npos);
+}
+
 TEST(Msckf, GivesTheSameBytesTwice) {
   const SimulatedRecording recording = Simulate(Room(1, 4.0));
   std::vector<std::string> bytes;
