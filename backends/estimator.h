@@ -61,6 +61,8 @@ struct SharedOptions {
   StandstillOptions standstill;
   FailureRule failure;
 
+  [[nodiscard]] TimeBounds time_bounds() const { return {max_abs_t_d_s, max_abs_t_r_s}; }
+
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Field("pixel_noise_px", &pixel_noise_px,

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,18 +9,10 @@
 
 namespace duet {
 
-/// Within which the estimators hold the times (shared.max_abs_t_d_s, shared.max_abs_t_r_s).
-struct TimeBounds {
-  double max_abs_t_d_s = std::numeric_limits<double>::infinity();
-  double max_abs_t_r_s = std::numeric_limits<double>::infinity();
-};
-
 /// What one run says of each number of the estimated calibration, in plain words: what it was told,
 /// what it found, how well, and whether the recording said anything about it at all.
 class CalibrationWatch {
  public:
-  /// A number whose standard deviation stays above this share of its prior's was not observed.
-  static constexpr double kUnobservedShare = 0.9;
   /// An estimate further from its told value than this many of its prior's standard deviations has
   /// left it: the prior, the model or the recording is wrong.
   static constexpr double kPriorSigmas = 5.0;

@@ -74,8 +74,8 @@ EstimatorRunResult RunEstimator(const EstimatorRunChoices& choices, Session* ses
   FrameSource& frames = tracker ? *tracker : *replay;
 
   EstimatorRunResult result;
-  const TimeBounds bounds = {setup.shared.max_abs_t_d_s, setup.shared.max_abs_t_r_s};
-  RunRecorder recorder(record->path(), estimator->layout(), setup.rig, bounds, choices.covariance);
+  RunRecorder recorder(record->path(), estimator->layout(), setup.rig, setup.shared.time_bounds(),
+                       choices.covariance);
   TimingLog timing;
   Progress progress(choices.backend, frames.count(), "frames", choices.quiet);
   result.outcome = RunEstimationLoop({.frames = frames,

@@ -7,18 +7,9 @@
 
 namespace duet {
 
-namespace {
-
-bool MayTimesDiffer(const RigCalibration& rig, const CalibrationLayout& layout) {
-  return rig.t_r_s != 0.0 || layout.OffsetOf(CalibrationBlock::kTimeOffset) >= 0 ||
-         layout.OffsetOf(CalibrationBlock::kReadoutTime) >= 0;
-}
-
-}  // namespace
-
 FilterState::FilterState(const RigCalibration& rig, const CalibrationPriors& priors, int max_clones)
     : layout_(priors, rig),
-      time_matters_(MayTimesDiffer(rig, layout_)),
+      time_matters_(PixelsLeaveTheInstant(priors, rig)),
       clone_size_(time_matters_ ? 9 : 6),
       max_clones_(max_clones),
       rig_(rig) {
@@ -76,17 +67,11 @@ void FilterState::RemoveClone(int clone) {
   clones_.erase(clones_.begin() + clone);
 }
 
-void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& dx, double max_abs_t_d_s,
-                          double max_abs_t_r_s) {
+void FilterState::Correct(const Eigen::Ref<const Eigen::VectorXd>& dx, const TimeBounds& bounds) {
   inertial_ = BoxPlus(inertial_, Vector15d(dx.head<kNavSize>()));
   if (layout_.size() > 0) {
     rig_ = BoxPlus(rig_, layout_, dx.segment(CalibrationOffset(), layout_.size()));
-    if (layout_.OffsetOf(CalibrationBlock::kTimeOffset) >= 0) {
-      rig_.t_d_s = std::clamp(rig_.t_d_s, -max_abs_t_d_s, max_abs_t_d_s);
-    }
-    if (layout_.OffsetOf(CalibrationBlock::kReadoutTime) >= 0) {
-      rig_.t_r_s = std::clamp(rig_.t_r_s, -max_abs_t_r_s, max_abs_t_r_s);
-    }
+    HoldTimes(layout_, bounds, &rig_);
   }
   for (int i = 0; i < static_cast<int>(clones_.size()); ++i) {
     Vector9d error = Vector9d::Zero();

@@ -82,8 +82,7 @@ class FilterState {
 
   /// x (+) dx (6.35) for the whole state; first estimates stay. t_d and t_r are kept within the
   /// bounds.
-  void Correct(const Eigen::Ref<const Eigen::VectorXd>& dx, double max_abs_t_d_s,
-               double max_abs_t_r_s);
+  void Correct(const Eigen::Ref<const Eigen::VectorXd>& dx, const TimeBounds& bounds);
 
   /// Takes the current values as first estimates, and the covariance with them:
   ///

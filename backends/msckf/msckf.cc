@@ -202,7 +202,7 @@ void Msckf::ApplyUpdate(const Eigen::Ref<const Eigen::MatrixXd>& H_r,
     Fail("the covariance is not positive definite");
     return;
   }
-  state_.Correct(dx_, setup_.shared.max_abs_t_d_s, setup_.shared.max_abs_t_r_s);
+  state_.Correct(dx_, setup_.shared.time_bounds());
   if (options_.first_estimates && options_.rebase_first_estimates) state_.Rebase();
 }
 

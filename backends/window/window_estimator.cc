@@ -14,8 +14,7 @@ ReprojectionSetup MakeReprojectionSetup(const EstimatorSetup& setup) {
   ReprojectionSetup reprojection;
   reprojection.g_G = setup.g_G;
   reprojection.pixel_noise_px = setup.shared.pixel_noise_px;
-  const CalibrationPriors& priors = setup.shared.calibration;
-  reprojection.off_instant = priors.t_d.estimated || priors.t_r.estimated || setup.rig.t_r_s != 0.0;
+  reprojection.off_instant = PixelsLeaveTheInstant(setup.shared.calibration, setup.rig);
   return reprojection;
 }
 
@@ -272,13 +271,7 @@ void WindowEstimator::Solve() {
     return;
   }
   problem_.Store(&frames_, &rig_, &table_.landmarks());
-  const SharedOptions& shared = setup_.shared;
-  if (layout_.OffsetOf(CalibrationBlock::kTimeOffset) >= 0) {
-    rig_.t_d_s = std::clamp(rig_.t_d_s, -shared.max_abs_t_d_s, shared.max_abs_t_d_s);
-  }
-  if (layout_.OffsetOf(CalibrationBlock::kReadoutTime) >= 0) {
-    rig_.t_r_s = std::clamp(rig_.t_r_s, -shared.max_abs_t_r_s, shared.max_abs_t_r_s);
-  }
+  HoldTimes(layout_, setup_.shared.time_bounds(), &rig_);
   linearizer_.SetWindow(frames_, rig_);
 }
 

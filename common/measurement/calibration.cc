@@ -252,6 +252,19 @@ Eigen::VectorXd BoxMinus(const RigCalibration& a, const RigCalibration& b,
   return error;
 }
 
+bool PixelsLeaveTheInstant(const CalibrationPriors& priors, const RigCalibration& rig) {
+  return priors.t_d.estimated || priors.t_r.estimated || rig.t_r_s != 0.0;
+}
+
+void HoldTimes(const CalibrationLayout& layout, const TimeBounds& bounds, RigCalibration* rig) {
+  if (layout.OffsetOf(CalibrationBlock::kTimeOffset) >= 0) {
+    rig->t_d_s = std::clamp(rig->t_d_s, -bounds.max_abs_t_d_s, bounds.max_abs_t_d_s);
+  }
+  if (layout.OffsetOf(CalibrationBlock::kReadoutTime) >= 0) {
+    rig->t_r_s = std::clamp(rig->t_r_s, -bounds.max_abs_t_r_s, bounds.max_abs_t_r_s);
+  }
+}
+
 Eigen::VectorXd ComponentValues(const RigCalibration& rig, const CalibrationLayout& layout) {
   Eigen::VectorXd values(layout.size());
   for (const auto& e : layout.entries()) {

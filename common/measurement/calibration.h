@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -102,6 +103,22 @@ class CalibrationLayout {
                                      const Eigen::Ref<const Eigen::VectorXd>& error);
 [[nodiscard]] Eigen::VectorXd BoxMinus(const RigCalibration& a, const RigCalibration& b,
                                        const CalibrationLayout& layout);
+
+/// True where a pixel may be of another instant than its frame's pose, because a time is estimated
+/// or the shutter told as rolling. Estimators then carry velocities and rates for their frames.
+[[nodiscard]] bool PixelsLeaveTheInstant(const CalibrationPriors& priors,
+                                         const RigCalibration& rig);
+
+/// Within which estimators hold the times that they estimate.
+struct TimeBounds {
+  double max_abs_t_d_s = std::numeric_limits<double>::infinity();
+  double max_abs_t_r_s = std::numeric_limits<double>::infinity();
+};
+/// Sets an estimated time that lies outside of its bound to it.
+void HoldTimes(const CalibrationLayout& layout, const TimeBounds& bounds, RigCalibration* rig);
+
+/// A number whose standard deviation stays above this share of its prior's was not observed.
+inline constexpr double kUnobservedShare = 0.9;
 
 /// The values of the estimated components for files, in the order of ComponentNames(); a rotation
 /// as the rotation vector of R_CB [rad].

@@ -18,11 +18,6 @@
 namespace duet {
 namespace {
 
-bool OffInstant(const EstimatorSetup& setup) {
-  const CalibrationPriors& priors = setup.shared.calibration;
-  return priors.t_d.estimated || priors.t_r.estimated || setup.rig.t_r_s != 0.0;
-}
-
 // A piece of a track on its way through the filter.
 struct OpenPiece {
   int piece = -1;  // number of the piece within its track
@@ -35,7 +30,7 @@ struct OpenPiece {
 FisherInformation::FisherInformation(const ObservedMotion& motion)
     : motion_(motion),
       layout_(motion.setup.shared.calibration, motion.setup.rig),
-      off_instant_(OffInstant(motion.setup)),
+      off_instant_(PixelsLeaveTheInstant(motion.setup.shared.calibration, motion.setup.rig)),
       frames_(motion.states.size()) {
   CHECK_EQ(motion.frames.size(), motion.states.size());
   CHECK(!motion.states.empty());

@@ -47,7 +47,7 @@ ObservabilityVerdict Judge(const Observability::Component& component) {
     return ObservabilityVerdict::kUnobservable;
   }
   const double ratio = component.cut / component.prior;
-  if (ratio > kNotObservedRatio) return ObservabilityVerdict::kNotObserved;
+  if (ratio > kUnobservedShare) return ObservabilityVerdict::kNotObserved;
   return ratio > kWeakRatio ? ObservabilityVerdict::kWeak : ObservabilityVerdict::kObserved;
 }
 
@@ -254,7 +254,7 @@ std::string ObservabilityText(const Observability& result) {
   text += Format(
       "  observed: down to %g of the prior or less; weak: to %g; not observed: hardly;\n"
       "  unobservable: part of a combination that nothing but priors holds\n\n",
-      kWeakRatio, kNotObservedRatio);
+      kWeakRatio, kUnobservedShare);
 
   const std::vector<std::string> names = result.Names();
   text += Format(
@@ -320,7 +320,7 @@ nlohmann::ordered_json ObservabilityJson(const Observability& result) {
            {{"wide_priors", kWidePriors},
             {"unobservable_ratio", kUnobservableRatio},
             {"unobservable_share", kUnobservableShare},
-            {"not_observed_ratio", kNotObservedRatio},
+            {"not_observed_ratio", kUnobservedShare},
             {"weak_ratio", kWeakRatio},
             {"untold_variance", kUntoldVariance},
             {"strong_correlation", kStrongCorrelation}}},

@@ -20,8 +20,8 @@ inline constexpr double kWidePriors = 1000.0;
 inline constexpr double kUnobservableRatio = 0.2;
 /// A component is unobservable that makes up this share of such a direction.
 inline constexpr double kUnobservableShare = 0.1;
-/// With the priors as they are: the ratio of expected and prior standard deviation.
-inline constexpr double kNotObservedRatio = 0.9;
+/// With the priors as they are: weak above this ratio of expected and prior standard deviation, not
+/// observed above kUnobservedShare.
 inline constexpr double kWeakRatio = 0.5;
 /// A combination is not told where more than this share of its prior variance is left.
 inline constexpr double kUntoldVariance = 0.8;

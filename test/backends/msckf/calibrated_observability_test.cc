@@ -181,7 +181,7 @@ class Flight {
           BoxMinus(BoxPlus(recording_.TruthAt(clone.instant).nav, scatter()), clone.nav);
     }
     if (!case_.corrected) dx.setZero();
-    state_->Correct(dx, 0.05, 0.05);
+    state_->Correct(dx, {.max_abs_t_d_s = 0.05, .max_abs_t_r_s = 0.05});
     if (case_.linearized != Linearized::kRebased) return;
     // What Rebase does to the covariance, for F.
     const auto rebase = [&](int offset, const NavState& now, const NavState& first) {

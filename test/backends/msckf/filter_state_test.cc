@@ -79,7 +79,7 @@ TEST(FilterState, CorrectionIsBoxPlusOfEveryPart) {
   Eigen::VectorXd dx(state.size());
   for (Eigen::Index i = 0; i < dx.size(); ++i) dx[i] = 1e-3 * random.Normal();
   const FilterState before = state;
-  state.Correct(dx, 1.0, 1.0);
+  state.Correct(dx, {});
   // Differences of numbers of size 5 hold 1e-15.
   EXPECT_LT((BoxMinus(state.inertial(), before.inertial()) - dx.head<15>()).norm(), 1e-14);
   EXPECT_LT((BoxMinus(state.rig(), before.rig(), state.layout()) - dx.segment(15, 7)).norm(),
@@ -98,7 +98,7 @@ TEST(FilterState, TimeOffsetStaysWithinItsBound) {
   FilterState state = test::RandomState(&random, test::StereoRig(), WithTimes(), 3);
   Eigen::VectorXd dx = Eigen::VectorXd::Zero(state.size());
   dx[15 + 6] = 0.5;
-  state.Correct(dx, 0.02, 0.0);
+  state.Correct(dx, {.max_abs_t_d_s = 0.02, .max_abs_t_r_s = 0.0});
   EXPECT_EQ(state.rig().t_d_s, 0.02);
 }
 

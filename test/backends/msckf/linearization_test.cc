@@ -156,7 +156,7 @@ TEST(Linearization, EqualsNumericDifferentiationOverStateAndCalibration) {
     const Eigen::MatrixXd numeric = -test::NumericJacobian(
                                         [&](const Eigen::VectorXd& error) {
                                           Scene moved = scene;
-                                          moved.state.Correct(unit.cwiseProduct(error), 1.0, 1.0);
+                                          moved.state.Correct(unit.cwiseProduct(error), {});
                                           return moved.Residual();
                                         },
                                         Eigen::VectorXd::Zero(scene.state.size())) *

@@ -170,14 +170,20 @@ TEST(WindowEstimator, EveryFrameModeKeepsConsecutiveFrames) {
 }
 
 TEST(WindowEstimator, SeesRestInAWindowShorterThanTheTimeRestIsJudgedOver) {
-  Flight run = Easy(3.0, 1, "room_rest");
-  run.options.keyframes = WindowOptions::Keyframes::kEveryFrame;
-  run.options.max_frames = 6;  // 0.3 s; rest is judged over half a second
-  int at_rest = 0;
-  run.Go([&](const WindowEstimator&, const EstimatorOutput& output) {
-    at_rest += output.standstill ? 1 : 0;
-  });
-  EXPECT_GT(at_rest, 25);  // of 60 frames
+  const auto frames_at_rest = [](WindowOptions::Keyframes keyframes, int max_frames) {
+    Flight run = Easy(3.0, 1, "room_rest");  // sets off after two seconds
+    run.options.keyframes = keyframes;
+    run.options.max_frames = max_frames;
+    int at_rest = 0;
+    run.Go([&](const WindowEstimator&, const EstimatorOutput& output) {
+      at_rest += output.standstill ? 1 : 0;
+    });
+    return at_rest;
+  };
+  const int with_keyframes = frames_at_rest(WindowOptions::Keyframes::kParallax, 11);
+  EXPECT_GT(with_keyframes, 10);
+  // Six consecutive frames span 0.3 s; rest is judged over half a second.
+  EXPECT_EQ(frames_at_rest(WindowOptions::Keyframes::kEveryFrame, 6), with_keyframes);
 }
 
 TEST(WindowEstimator, DroppedFramesLeaveTheWholeImuDelta) {
