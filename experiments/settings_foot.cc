@@ -1,6 +1,7 @@
 #include "experiments/settings_foot.h"
 
 #include <cmath>
+#include <optional>
 #include <string_view>
 
 #include "common/support/numeric_text.h"
@@ -53,10 +54,26 @@ std::string EstimatedCalibration(const std::vector<ResolvedValue>& values) {
   return text.empty() ? "none" : text;
 }
 
+/// The mean over records of their means over frames; nothing where no record tells.
+std::optional<double> LandmarksUsed(const std::vector<std::filesystem::path>& folders) {
+  double sum = 0.0;
+  int count = 0;
+  for (const std::filesystem::path& folder : folders) {
+    const std::filesystem::path features = folder / "features.csv";
+    if (!std::filesystem::exists(features)) continue;
+    const double used = ReadFeatureMean(ReadTextFile(features), features.string(), "used");
+    if (!std::isfinite(used)) continue;
+    sum += used;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
+
 }  // namespace
 
 Foot SettingsFoot(const std::vector<ResolvedValue>& values, const std::string& estimator,
-                  const std::filesystem::path& folder) {
+                  const std::vector<std::filesystem::path>& folders) {
   Foot foot;
   for (const FootRow& row : FootRows()) {
     for (const char* key : row.keys) {
@@ -68,10 +85,8 @@ Foot SettingsFoot(const std::vector<ResolvedValue>& values, const std::string& e
   if (const std::string* standstill = ValueOf(values, "shared.standstill.enabled")) {
     foot.emplace_back("standstill measurement", *standstill);
   }
-  const std::filesystem::path features = folder / "features.csv";
-  if (std::filesystem::exists(features)) {
-    const double used = ReadFeatureMean(ReadTextFile(features), features.string(), "used");
-    foot.emplace_back("landmarks used a frame", std::isfinite(used) ? FormatFixed(used, 1) : "-");
+  if (const std::optional<double> used = LandmarksUsed(folders)) {
+    foot.emplace_back("landmarks used a frame", FormatFixed(*used, 1));
   }
   return foot;
 }
