@@ -1,6 +1,7 @@
 #include "evaluation/paired_test.h"
 
 #include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -72,10 +73,10 @@ PairedComparison::PairedComparison()
       standard_error(kNaN) {}
 
 double PairedComparison::Detectable(double level) const {
-  if (std::isnan(standard_error)) return kNaN;
-  const boost::math::normal normal;
-  const double distance = (boost::math::quantile(boost::math::complement(normal, 0.5 * level)) +
-                           boost::math::quantile(normal, 0.8)) *
+  if (std::isnan(standard_error) || pairs < 2) return kNaN;
+  const boost::math::students_t t(pairs - 1);
+  const double distance = (boost::math::quantile(boost::math::complement(t, 0.5 * level)) +
+                           boost::math::quantile(t, 0.8)) *
                           standard_error;
   return is_ratio ? std::exp(distance) : distance;
 }
