@@ -1,6 +1,7 @@
 #include "experiments/settings_foot.h"
 
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string_view>
 
@@ -54,20 +55,31 @@ std::string EstimatedCalibration(const std::vector<ResolvedValue>& values) {
   return text.empty() ? "none" : text;
 }
 
-/// The mean over records of their means over frames; nothing where no record tells.
-std::optional<double> LandmarksUsed(const std::vector<std::filesystem::path>& folders) {
+/// The mean over the records of what `read` tells of each features.csv; nothing where none tells.
+std::optional<double> MeanOverRecords(
+    const std::vector<std::filesystem::path>& folders,
+    const std::function<double(const std::string& csv, const std::string& file)>& read) {
   double sum = 0.0;
   int count = 0;
   for (const std::filesystem::path& folder : folders) {
     const std::filesystem::path features = folder / "features.csv";
     if (!std::filesystem::exists(features)) continue;
-    const double used = ReadFeatureMean(ReadTextFile(features), features.string(), "used");
-    if (!std::isfinite(used)) continue;
-    sum += used;
+    const double value = read(ReadTextFile(features), features.string());
+    if (!std::isfinite(value)) continue;
+    sum += value;
     ++count;
   }
   if (count == 0) return std::nullopt;
   return sum / count;
+}
+
+int WindowFrames(const std::vector<ResolvedValue>& values, const std::string& estimator) {
+  for (const char* key : {".max_clones", ".max_frames"}) {
+    const std::string* value = ValueOf(values, estimator + key);
+    if (value == nullptr) continue;
+    if (const auto frames = ParseInt64(*value)) return static_cast<int>(*frames);
+  }
+  return 0;
 }
 
 }  // namespace
@@ -85,9 +97,17 @@ Foot SettingsFoot(const std::vector<ResolvedValue>& values, const std::string& e
   if (const std::string* standstill = ValueOf(values, "shared.standstill.enabled")) {
     foot.emplace_back("standstill measurement", *standstill);
   }
-  if (const std::optional<double> used = LandmarksUsed(folders)) {
-    foot.emplace_back("landmarks used a frame", FormatFixed(*used, 1));
+  if (const int frames = WindowFrames(values, estimator); frames > 0) {
+    const auto span_s =
+        MeanOverRecords(folders, [&](const std::string& csv, const std::string& file) {
+          return ReadWindowSpan(csv, file, frames);
+        });
+    if (span_s) foot.emplace_back("seconds spanned by a full window", FormatFixed(*span_s, 2));
   }
+  const auto used = MeanOverRecords(folders, [](const std::string& csv, const std::string& file) {
+    return ReadFeatureMean(csv, file, "used");
+  });
+  if (used) foot.emplace_back("landmarks used a frame", FormatFixed(*used, 1));
   return foot;
 }
 

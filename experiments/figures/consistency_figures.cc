@@ -83,9 +83,9 @@ Figure NeesOverTimeFigure(const FigureInput& input) {
       ++missing;
     } else {
       // Where the input is not known each run has its own.
-      const std::string input =
+      const std::string ran_on =
           run.where.stream_id.empty() ? run.folder.string() : run.where.stream_id;
-      nees[run.where.estimator].push_back({input, NeesOf(run)});
+      nees[run.where.estimator].push_back({ran_on, NeesOf(run)});
     }
   }
 
