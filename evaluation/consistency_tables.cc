@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "evaluation/chi_squared.h"
+#include "evaluation/failure_reasons.h"
 #include "evaluation/holm.h"
 #include "evaluation/proportion.h"
 #include "evaluation/statistics.h"
@@ -27,6 +28,7 @@ struct NeesCell {
   Metric metric;
   double dof = kUnknown;
   int runs = 0;
+  int inputs = 0;  ///< of the runs, different: so many values are independent
   double mean = kUnknown;
   double standard_error = kUnknown;
   Band band = {kUnknown, kUnknown};
@@ -45,21 +47,22 @@ NeesCell MakeNeesCell(const StudyCell& runs, const Metric& metric) {
     });
     cell.dof = one_size && sizes.front() > 0.0 ? sizes.front() : kUnknown;
   }
-  const std::vector<double> values = runs.Values(metric.key);
-  cell.runs = static_cast<int>(values.size());
+  cell.runs = static_cast<int>(runs.Values(metric.key).size());
+  const std::vector<double> values = runs.MeansByInput(metric.key);
+  cell.inputs = static_cast<int>(values.size());
   if (values.empty()) return cell;
   cell.mean = Summarize(values).mean;
   if (values.size() > 1) {
     double squares = 0.0;
     for (const double value : values) squares += (value - cell.mean) * (value - cell.mean);
-    cell.standard_error = std::sqrt(squares / (cell.runs - 1) / cell.runs);
+    cell.standard_error = std::sqrt(squares / (cell.inputs - 1) / cell.inputs);
   }
   return cell;
 }
 
 const char* NeesVerdict(const NeesCell& cell, double alpha) {
   if (cell.runs == 0 || std::isnan(cell.dof)) return "-";
-  if (cell.runs == 1) return "one run, no verdict";
+  if (cell.inputs == 1) return cell.runs == 1 ? "one run, no verdict" : "one input, no verdict";
   if (!(cell.p_holm <= alpha)) return "not refuted";
   return cell.mean > cell.dof ? "too sure" : "too unsure";
 }
@@ -109,29 +112,17 @@ std::string NeesSentence(const StudyGrid& grid, const std::vector<NeesCell>& cel
             std::to_string(others) + " are refuted in none of " + std::to_string(tests_of_others) +
             " tests";
   }
-  if (text.empty()) return "No NEES can be tested: it takes two runs with one.";
+  if (text.empty()) return "No NEES can be tested: it takes runs with one on two inputs.";
   text[0] = 'T';
   return text + ".";
 }
 
-/// The commonest reason of the failures; the first of equals.
-std::string CommonestReason(const StudyCell& cell) {
-  std::vector<std::pair<std::string, int>> reasons;
+std::vector<std::string> ReasonsOf(const StudyCell& cell) {
+  std::vector<std::string> reasons;
   for (const StudyRun* run : cell.runs) {
-    if (!run->failed) continue;
-    const auto found = std::find_if(reasons.begin(), reasons.end(),
-                                    [&](const auto& r) { return r.first == run->reason; });
-    if (found == reasons.end()) {
-      reasons.emplace_back(run->reason, 1);
-    } else {
-      ++found->second;
-    }
+    if (run->failed) reasons.push_back(run->reason);
   }
-  if (reasons.empty()) return "";
-  const auto most =
-      std::max_element(reasons.begin(), reasons.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  return most->first + (reasons.size() > 1 ? " (" + std::to_string(most->second) + ")" : "");
+  return reasons;
 }
 
 std::string FailureSentence(const StudyGrid& grid, const StudyTableOptions& options) {
@@ -187,8 +178,10 @@ StudyTable NeesTable(const StudyGrid& grid, const std::vector<Metric>& metrics,
         cell.stream = s;
         cell.arm = a;
         if (cell.runs > 0 && cell.dof > 0.0) {
-          cell.band = MeanChiSquaredBand(cell.dof, cell.runs, 1.0 - options.alpha);
-          if (cell.runs > 1) cell.p_value = MeanChiSquaredPValue(cell.mean, cell.dof, cell.runs);
+          cell.band = MeanChiSquaredBand(cell.dof, cell.inputs, 1.0 - options.alpha);
+          if (cell.inputs > 1) {
+            cell.p_value = MeanChiSquaredPValue(cell.mean, cell.dof, cell.inputs);
+          }
         }
         if (cell.runs > 0) cells.push_back(std::move(cell));
       }
@@ -205,6 +198,7 @@ StudyTable NeesTable(const StudyGrid& grid, const std::vector<Metric>& metrics,
   table.columns = {{.title = "run with", .is_text = true},
                    {.title = "of", .is_text = true},
                    {.title = "runs"},
+                   {.title = "inputs"},
                    {.title = "expected"},
                    {.title = "mean", .spread = "1 standard error"},
                    {.title = "band, low end"},
@@ -222,13 +216,16 @@ StudyTable NeesTable(const StudyGrid& grid, const std::vector<Metric>& metrics,
     table.rows.push_back(
         {.section = "",
          .cells = {TextCell(grid.arms()[cell.arm].name), TextCell(cell.metric.words),
-                   NumberCell(cell.runs, 0), NumberCell(cell.dof, 0), std::move(mean),
-                   NumberCell(cell.band.low, 2), NumberCell(cell.band.high, 2),
+                   NumberCell(cell.runs, 0), NumberCell(cell.inputs, 0), NumberCell(cell.dof, 0),
+                   std::move(mean), NumberCell(cell.band.low, 2), NumberCell(cell.band.high, 2),
                    PValueCell(cell.p_holm), TextCell(NeesVerdict(cell, options.alpha))}});
   }
   table.verdict = NeesSentence(grid, cells, options.alpha);
   table.foot = {
-      "band: where the mean of as many consistent runs lies with probability " +
+      "inputs: of the runs, different; runs on one recording share its noise and are one value, "
+      "their "
+      "mean",
+      "band: where the mean over as many inputs lies for consistent runs with probability " +
           Number(1.0 - options.alpha, 2) +
           ", as if each run were one instant; a run's own value is its mean over time, which "
           "scatters less, so that a mean outside is a finding and one inside proves less",
@@ -260,7 +257,7 @@ StudyTable FailureTable(const StudyGrid& grid, const StudyTableOptions& options)
       table.rows.push_back({.section = "",
                             .cells = {TextCell(grid.arms()[a].name), NumberCell(runs, 0),
                                       NumberCell(cell.failed(), 0), std::move(rate),
-                                      TextCell(CommonestReason(cell))}});
+                                      TextCell(CommonestReason(ReasonsOf(cell)))}});
     }
   }
   table.verdict = FailureSentence(grid, options);

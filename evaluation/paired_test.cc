@@ -1,6 +1,7 @@
 #include "evaluation/paired_test.h"
 
 #include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -35,14 +36,10 @@ double ShownDifference(const PairedRuns& pair, const Metric& metric) {
   return raw ? pair.first - pair.second : metric.Score(pair.first) - metric.Score(pair.second);
 }
 
-/// See PairedComparison::detectable; `interval` is symmetric enough for its length to tell the
-/// standard error.
-double DetectableDifference(const Band& interval, double confidence) {
+double StandardErrorOf(const Band& interval, double confidence) {
   const boost::math::normal normal;
-  const double sigmas = 2.0 * boost::math::quantile(normal, 0.5 + 0.5 * confidence);
-  const double standard_error = (interval.high - interval.low) / sigmas;
-  return (boost::math::quantile(normal, 0.975) + boost::math::quantile(normal, 0.8)) *
-         standard_error;
+  return (interval.high - interval.low) /
+         (2.0 * boost::math::quantile(normal, 0.5 + 0.5 * confidence));
 }
 
 void CountPairs(std::span<const std::vector<PairedRuns>> strata, PairedComparison* comparison) {
@@ -69,7 +66,28 @@ void CountPairs(std::span<const std::vector<PairedRuns>> strata, PairedCompariso
 }  // namespace
 
 PairedComparison::PairedComparison()
-    : ratio(kNaN), ratio_interval{kNaN, kNaN}, difference(kNaN), difference_interval{kNaN, kNaN} {}
+    : ratio(kNaN),
+      ratio_interval{kNaN, kNaN},
+      difference(kNaN),
+      difference_interval{kNaN, kNaN},
+      standard_error(kNaN) {}
+
+double PairedComparison::Detectable(double level) const {
+  if (std::isnan(standard_error) || pairs < 2) return kNaN;
+  const boost::math::students_t t(pairs - 1);
+  const double distance = (boost::math::quantile(boost::math::complement(t, 0.5 * level)) +
+                           boost::math::quantile(t, 0.8)) *
+                          standard_error;
+  return is_ratio ? std::exp(distance) : distance;
+}
+
+bool CanShow(int informative, double level) { return std::ldexp(1.0, 1 - informative) <= level; }
+
+int PairsNeeded(double level) {
+  int pairs = 1;
+  while (!CanShow(pairs, level)) ++pairs;
+  return pairs;
+}
 
 PairedComparison ComparePairs(std::span<const std::vector<PairedRuns>> strata, const Metric& metric,
                               const PairedOptions& options) {
@@ -105,13 +123,13 @@ PairedComparison ComparePairs(std::span<const std::vector<PairedRuns>> strata, c
   };
   comparison.difference = estimate(differences);
   comparison.difference_interval = BootstrapInterval(differences, HodgesLehmann, options.bootstrap);
-  comparison.detectable =
-      DetectableDifference(comparison.difference_interval, options.bootstrap.confidence);
+  comparison.standard_error =
+      StandardErrorOf(comparison.difference_interval, options.bootstrap.confidence);
   if (comparison.is_ratio) {
     comparison.ratio = std::exp(estimate(logarithms));
     const Band interval = BootstrapInterval(logarithms, HodgesLehmann, options.bootstrap);
     comparison.ratio_interval = {std::exp(interval.low), std::exp(interval.high)};
-    comparison.detectable = std::exp(DetectableDifference(interval, options.bootstrap.confidence));
+    comparison.standard_error = StandardErrorOf(interval, options.bootstrap.confidence);
   }
   return comparison;
 }

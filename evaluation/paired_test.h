@@ -45,11 +45,16 @@ struct PairedComparison {
   double difference;
   Band difference_interval;
 
-  /// The difference that so many pairs that scatter like these show with probability 0.8 at a
-  /// two-sided level of 0.05: of logarithms as a factor (> 1) where `is_ratio`, else in the
-  /// metric's unit. From the interval: the estimate and the test have the same efficiency, so that
-  /// it is (1.96 + 0.84) standard errors of the estimate. NaN without an interval.
-  double detectable;
+  /// Of the estimate: of the ratio's logarithm where `is_ratio`, else of the difference. From the
+  /// interval, which is symmetric enough for its length to tell it; NaN without an interval.
+  double standard_error;
+  /// The difference that so many pairs that scatter like these show with probability 0.8 in a
+  /// two-sided test at `level`: a factor (> 1) where `is_ratio`, else in the metric's unit. The
+  /// estimate and the test have the same efficiency, so that it is t(1 - level / 2) + t(0.8)
+  /// standard errors of the estimate, quantiles of Student's t with pairs - 1 degrees of freedom:
+  /// normal ones promise 18 pairs at level 0.05 / 8 a probability of 0.8 that is 0.63. NaN where
+  /// the standard error is not known.
+  [[nodiscard]] double Detectable(double level) const;
 
   SignedRank test;
   double failure_p_value = 1.0;  ///< McNemar's, that both fail equally often
@@ -60,6 +65,11 @@ struct PairedComparison {
 
   PairedComparison();
 };
+
+/// True where `informative` pairs can reach p <= level at all: all of them to one side.
+[[nodiscard]] bool CanShow(int informative, double level);
+/// The fewest that can.
+[[nodiscard]] int PairsNeeded(double level);
 
 /// `strata`: the pairs of each stream; ranks are over all of them together, resamples within each.
 [[nodiscard]] PairedComparison ComparePairs(std::span<const std::vector<PairedRuns>> strata,

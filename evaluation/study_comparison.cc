@@ -3,12 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <map>
-#include <span>
 #include <utility>
 
-#include "common/support/input_error.h"
-#include "common/support/nearest_name.h"
 #include "evaluation/holm.h"
 #include "evaluation/statistics.h"
 #include "evaluation/study_table_parts.h"
@@ -22,38 +18,11 @@ double MedianOrNaN(const std::vector<double>& values) {
   return values.empty() ? kNoNumber : Summarize(values).median;
 }
 
-/// The name of the axis that is compared, and of the rest.
-const std::string& ComparedName(const StudyArm& arm, ComparedAxis axis) {
-  return axis == ComparedAxis::kEstimators ? arm.estimator
-         : axis == ComparedAxis::kSettings ? arm.setting
-                                           : arm.perturbation;
-}
-
-bool SameBut(const StudyArm& a, const StudyArm& b, ComparedAxis axis) {
-  return (axis == ComparedAxis::kEstimators || a.estimator == b.estimator) &&
-         (axis == ComparedAxis::kSettings || a.setting == b.setting) &&
-         (axis == ComparedAxis::kPerturbations || a.perturbation == b.perturbation);
-}
-
-std::string Baseline(const StudyGrid& grid, const StudyTableOptions& options) {
-  std::vector<std::string> names;
-  for (const StudyArm& arm : grid.arms()) {
-    names.push_back(ComparedName(arm, options.compare));
-  }
-  if (options.baseline.empty()) return names.empty() ? "" : names.front();
-  if (std::find(names.begin(), names.end(), options.baseline) == names.end()) {
-    throw InputError("", 0, "baseline",
-                     "nothing in the study is called \"" + options.baseline + "\"" +
-                         DidYouMean(options.baseline, names));
-  }
-  return options.baseline;
-}
-
 /// Indices of the arms of each comparison.
 std::vector<std::pair<std::size_t, std::size_t>> ComparedArms(const StudyGrid& grid,
                                                               const StudyTableOptions& options) {
   const bool each_with_each = options.compare == ComparedAxis::kEstimators;
-  const std::string baseline = each_with_each ? "" : Baseline(grid, options);
+  const std::string baseline = each_with_each ? "" : BaselineOf(grid, options);
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t a = 0; a < grid.arms().size(); ++a) {
     for (std::size_t b = each_with_each ? a + 1 : 0; b < grid.arms().size(); ++b) {
@@ -66,75 +35,22 @@ std::vector<std::pair<std::size_t, std::size_t>> ComparedArms(const StudyGrid& g
   return pairs;
 }
 
-/// One pair of what several runs on identical input say: starts or pixel jitter on one recording
-/// are no independent observations of who is better. Medians of those that ran; failed is who
-/// failed in more than half of them.
-PairedRuns OnePairOf(const std::vector<PairedRuns>& pairs) {
-  if (pairs.size() == 1) return pairs.front();
-  std::vector<double> first;
-  std::vector<double> second;
-  std::size_t first_failed = 0;
-  std::size_t second_failed = 0;
-  for (const PairedRuns& pair : pairs) {
-    first_failed += pair.first_failed ? 1 : 0;
-    second_failed += pair.second_failed ? 1 : 0;
-    if (pair.first_failed || pair.second_failed) continue;
-    if (!std::isfinite(pair.first) || !std::isfinite(pair.second)) continue;
-    first.push_back(pair.first);
-    second.push_back(pair.second);
-  }
-  return {MedianOrNaN(first), MedianOrNaN(second), 2 * first_failed > pairs.size(),
-          2 * second_failed > pairs.size()};
-}
-
-/// Runs of the two cells with the same seed, those on identical input as one pair, in the order of
-/// the first cell.
-std::vector<PairedRuns> PairsOf(const StudyCell& first, const StudyCell& second,
-                                const Metric& metric) {
-  std::map<int, const StudyRun*> by_seed;
-  for (const StudyRun* run : second.runs) by_seed.emplace(run->seed, run);
-  std::vector<std::vector<PairedRuns>> by_input;
-  std::map<std::string, std::size_t> index;
-  for (const StudyRun* run : first.runs) {
-    const auto other = by_seed.find(run->seed);
-    if (other == by_seed.end()) continue;
-    // Where the input is not known each run has its own.
-    const std::string input =
-        run->stream_id.empty() ? "seed " + std::to_string(run->seed) : run->stream_id;
-    const auto [found, is_new] = index.emplace(input, by_input.size());
-    if (is_new) by_input.emplace_back();
-    by_input[found->second].push_back({MetricValue(*run, metric.key),
-                                       MetricValue(*other->second, metric.key), run->failed,
-                                       other->second->failed});
-  }
-  std::vector<PairedRuns> pairs;
-  for (const auto& of_input : by_input) pairs.push_back(OnePairOf(of_input));
-  return pairs;
-}
-
 /// Streams of one pair each are the observations themselves: they are resampled together.
 std::vector<std::vector<PairedRuns>> Resampled(std::vector<std::vector<PairedRuns>> strata) {
   std::vector<PairedRuns> single;
   for (const auto& stratum : strata) {
     if (stratum.size() == 1) single.push_back(stratum.front());
   }
-  std::erase_if(strata, [](const auto& stratum) { return stratum.size() == 1; });
+  std::erase_if(strata, [](const auto& stratum) { return stratum.size() <= 1; });
   if (!single.empty()) strata.push_back(std::move(single));
   return strata;
 }
 
 /// The median difference between two runs of the cell: of logarithms where `ratio`.
 double ChaosOf(const StudyCell& cell, const Metric& metric, bool ratio) {
-  const std::vector<double> values = cell.Values(metric.key);
-  std::vector<double> differences;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const double difference = std::abs(ratio ? std::log(values[i] / values[j])
-                                               : metric.Score(values[i]) - metric.Score(values[j]));
-      if (std::isfinite(difference)) differences.push_back(difference);
-    }
-  }
-  return MedianOrNaN(differences);
+  std::vector<double> values = cell.Values(metric.key);
+  for (double& value : values) value = ratio ? std::log(value) : metric.Score(value);
+  return MedianPairDifference(values);
 }
 
 double ChaosFloor(const StudyGrid& grid, std::size_t first, std::size_t second,
@@ -149,15 +65,6 @@ double ChaosFloor(const StudyGrid& grid, std::size_t first, std::size_t second,
   return ratio ? std::exp(floor) : floor;
 }
 
-double CoverageOf(const StudyGrid& grid, const std::vector<std::size_t>& streams, std::size_t arm) {
-  std::vector<double> values;
-  for (const std::size_t s : streams) {
-    const std::vector<double> more = grid.cell(s, arm).Values("coverage_share");
-    values.insert(values.end(), more.begin(), more.end());
-  }
-  return MedianOrNaN(values);
-}
-
 bool BelowChaosFloor(const ComparisonRow& row, double floor) {
   if (std::isnan(floor)) return false;
   // Failures are no matter of chaos.
@@ -166,11 +73,14 @@ bool BelowChaosFloor(const ComparisonRow& row, double floor) {
                              : std::abs(row.paired.difference) < floor;
 }
 
-Decision Decide(const ComparisonRow& row, double chaos_floor, const Metric& metric,
+Decision Decide(const ComparisonRow& row, double chaos_floor, const MetricComparison& comparison,
                 const StudyTableOptions& options) {
+  const Metric& metric = comparison.metric;
   if (row.paired.informative() == 0 && row.paired.test.zeros > 0) return Decision::kEqual;
-  if (std::ldexp(1.0, 1 - row.paired.informative()) > options.alpha) return Decision::kTooFew;
-  if (!(row.p_holm <= options.alpha)) return Decision::kNothing;
+  if (!(row.p_holm <= comparison.alpha)) {
+    return CanShow(row.paired.informative(), comparison.first_step_alpha()) ? Decision::kNothing
+                                                                            : Decision::kTooFew;
+  }
   if (metric.better == Better::kNeither) return Decision::kNoDirection;
   if (BelowChaosFloor(row, chaos_floor)) return Decision::kBelowChaos;
   const bool first = row.paired.direction() < 0.0;
@@ -184,31 +94,23 @@ Decision Decide(const ComparisonRow& row, double chaos_floor, const Metric& metr
 
 ArmComparison CompareTwoArms(const StudyGrid& grid, std::size_t first, std::size_t second,
                              const Metric& metric, const StudyTableOptions& options) {
-  ArmComparison arms;
-  arms.first = grid.arms()[first].name;
-  arms.second = grid.arms()[second].name;
-  PairedOptions paired_options;
-  paired_options.bootstrap.resamples = options.bootstrap_resamples;
-  std::vector<std::vector<PairedRuns>> strata;
-  std::vector<std::size_t> streams;
-  const auto add_row = [&](std::string name, std::span<const std::vector<PairedRuns>> pairs,
-                           const std::vector<std::size_t>& of_streams) {
-    ComparisonRow row;
-    row.stream = std::move(name);
-    row.paired = ComparePairs(pairs, metric, paired_options);
-    row.first_coverage = CoverageOf(grid, of_streams, first);
-    row.second_coverage = CoverageOf(grid, of_streams, second);
-    arms.rows.push_back(std::move(row));
-  };
+  std::vector<ComparedStream> streams;
+  std::vector<std::size_t> indices;
   for (std::size_t s = 0; s < grid.streams().size(); ++s) {
     if (IsChaosStream(options, grid.streams()[s])) continue;
-    std::vector<PairedRuns> pairs = PairsOf(grid.cell(s, first), grid.cell(s, second), metric);
+    StreamPairs pairs = PairsOf(grid.cell(s, first), grid.cell(s, second), metric);
     if (pairs.empty()) continue;
-    add_row(grid.streams()[s], {&pairs, 1}, {s});
-    strata.push_back(std::move(pairs));
-    streams.push_back(s);
+    indices.push_back(s);
+    streams.push_back({grid.streams()[s], std::move(pairs), MedianCoverage(grid, {s}, first),
+                       MedianCoverage(grid, {s}, second)});
   }
-  if (strata.size() > 1) add_row("", Resampled(strata), streams);
+  ArmComparison arms = CompareStreams(streams, metric, options);
+  arms.first = grid.arms()[first].name;
+  arms.second = grid.arms()[second].name;
+  if (arms.rows.size() > 1) {
+    arms.rows.back().first_coverage = MedianCoverage(grid, indices, first);
+    arms.rows.back().second_coverage = MedianCoverage(grid, indices, second);
+  }
   if (!arms.rows.empty()) {
     arms.chaos_floor =
         ChaosFloor(grid, first, second, metric, arms.overall().paired.is_ratio, options);
@@ -227,24 +129,79 @@ MetricComparison CompareArms(const StudyGrid& grid, const Metric& metric,
     ArmComparison arms = CompareTwoArms(grid, first, second, metric, options);
     if (!arms.rows.empty()) comparison.arms.push_back(std::move(arms));
   }
+  DecideAll(options, &comparison);
+  return comparison;
+}
+
+double MedianCoverage(const StudyGrid& grid, const std::vector<std::size_t>& streams,
+                      std::size_t arm) {
+  std::vector<double> values;
+  for (const std::size_t s : streams) {
+    const std::vector<double> more = grid.cell(s, arm).Values("coverage_share");
+    values.insert(values.end(), more.begin(), more.end());
+  }
+  return MedianOrNaN(values);
+}
+
+ArmComparison CompareStreams(const std::vector<ComparedStream>& streams, const Metric& metric,
+                             const StudyTableOptions& options) {
+  PairedOptions paired_options;
+  paired_options.bootstrap.resamples = options.bootstrap_resamples;
+  std::vector<StreamPairs> pairs;
+  for (const ComparedStream& stream : streams) pairs.push_back(stream.pairs);
+  const std::vector<std::vector<PairedRuns>> strata = EachInputOnce(pairs);
+  ArmComparison arms;
+  for (std::size_t s = 0; s < streams.size(); ++s) {
+    const std::vector<PairedRuns> own = OnePairAnInput(streams[s].pairs);
+    arms.rows.push_back({.stream = streams[s].name,
+                         .repeats = strata[s].empty(),
+                         .paired = ComparePairs({&own, 1}, metric, paired_options),
+                         .first_coverage = streams[s].first_coverage,
+                         .second_coverage = streams[s].second_coverage});
+  }
+  if (streams.size() > 1) {
+    arms.rows.push_back(
+        {.stream = "", .paired = ComparePairs(Resampled(strata), metric, paired_options)});
+  }
+  return arms;
+}
+
+void DecideAll(const StudyTableOptions& options, MetricComparison* comparison) {
   std::vector<double> p_values;
-  for (const ArmComparison& arms : comparison.arms) {
+  comparison->tests = 0;
+  for (const ArmComparison& arms : comparison->arms) {
     for (const ComparisonRow& row : arms.rows) {
       const bool tested = row.paired.informative() > 0 || row.paired.test.zeros > 0;
       p_values.push_back(tested ? row.paired.test.p_value : kNoNumber);
-      if (tested) ++comparison.tests;
+      if (tested) ++comparison->tests;
     }
   }
   const std::vector<double> adjusted = HolmAdjusted(p_values);
   std::size_t i = 0;
-  for (ArmComparison& arms : comparison.arms) {
+  for (ArmComparison& arms : comparison->arms) {
     for (ComparisonRow& row : arms.rows) {
       row.p_holm = adjusted[i++];
       const bool same_kind = row.paired.is_ratio == arms.overall().paired.is_ratio;
-      row.decision = Decide(row, same_kind ? arms.chaos_floor : kNoNumber, metric, options);
+      row.decision = Decide(row, same_kind ? arms.chaos_floor : kNoNumber, *comparison, options);
     }
   }
-  return comparison;
+}
+
+double MedianPairDifference(const std::vector<double>& values) {
+  std::vector<double> differences;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double difference = std::abs(values[i] - values[j]);
+      if (std::isfinite(difference)) differences.push_back(difference);
+    }
+  }
+  return MedianOrNaN(differences);
+}
+
+int ArmComparison::streams() const {
+  const auto end = rows.begin() + static_cast<std::ptrdiff_t>(single_rows());
+  return static_cast<int>(
+      std::count_if(rows.begin(), end, [](const ComparisonRow& row) { return !row.repeats; }));
 }
 
 std::string DecisionText(const ArmComparison& arms, Decision decision) {

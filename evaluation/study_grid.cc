@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 namespace duet {
@@ -66,6 +67,35 @@ std::vector<double> StudyCell::Values(std::string_view metric) const {
   return values;
 }
 
+std::vector<double> StudyCell::Magnitudes(const Metric& metric) const {
+  std::vector<double> values = Values(metric.key);
+  if (metric.better == Better::kNearZero) {
+    for (double& value : values) value = std::abs(value);
+  }
+  return values;
+}
+
+std::vector<double> StudyCell::MeansByInput(std::string_view metric) const {
+  struct Sum {
+    double sum = 0.0;
+    int count = 0;
+  };
+  std::vector<Sum> sums;
+  std::map<std::string, std::size_t> index;
+  for (const StudyRun* run : runs) {
+    const double value = MetricValue(*run, metric);
+    if (run->failed || !std::isfinite(value)) continue;
+    const auto [found, is_new] = index.emplace(InputOf(*run), sums.size());
+    if (is_new) sums.emplace_back();
+    Sum& of_input = sums[found->second];
+    of_input.sum += value;
+    ++of_input.count;
+  }
+  std::vector<double> means;
+  for (const Sum& of_input : sums) means.push_back(of_input.sum / of_input.count);
+  return means;
+}
+
 StudyGrid::StudyGrid(const StudyResult& study) : study_(study) {
   for (const StudyRun& run : study.runs) {
     IndexIn(&streams_, run.stream);
@@ -78,6 +108,10 @@ StudyGrid::StudyGrid(const StudyResult& study) : study_(study) {
     const std::size_t i = IndexIn(&streams_, run.stream) * arms_.size() + IndexIn(&arms_, run);
     if (run.id.empty() || seen[i].insert(run.id).second) cells_[i].runs.push_back(&run);
   }
+}
+
+std::string InputOf(const StudyRun& run) {
+  return run.stream_id.empty() ? run.stream + " seed " + std::to_string(run.seed) : run.stream_id;
 }
 
 double MetricValue(const StudyRun& run, std::string_view metric) {

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "evaluation/metrics.h"
 #include "evaluation/study_result.h"
 
 namespace duet {
@@ -27,6 +28,11 @@ struct StudyCell {
   [[nodiscard]] std::string FailedText() const;
   /// Of the runs that did not fail and have the metric.
   [[nodiscard]] std::vector<double> Values(std::string_view metric) const;
+  /// Of an error with a sign its magnitudes: errors that cancel are not small. Else Values.
+  [[nodiscard]] std::vector<double> Magnitudes(const Metric& metric) const;
+  /// Values with one value an input (StudyRun::stream_id): the mean of its runs. Runs on one
+  /// recording share its noise and are no independent draws of it.
+  [[nodiscard]] std::vector<double> MeansByInput(std::string_view metric) const;
 };
 
 /// A study's runs by stream and arm, both in the order in which the study has them first. A record
@@ -49,6 +55,10 @@ class StudyGrid {
   std::vector<StudyArm> arms_;
   std::vector<StudyCell> cells_;
 };
+
+/// What a run ran on: equal for runs on identical input, whose noise is the same draw. Where that
+/// is not known each stream and seed is its own.
+[[nodiscard]] std::string InputOf(const StudyRun& run);
 
 /// NaN where the run has none.
 [[nodiscard]] double MetricValue(const StudyRun& run, std::string_view metric);

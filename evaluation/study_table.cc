@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "common/support/input_error.h"
@@ -12,6 +13,7 @@
 #include "evaluation/published.h"
 #include "evaluation/statistics.h"
 #include "evaluation/study_comparison.h"
+#include "evaluation/study_gains.h"
 #include "evaluation/study_grid.h"
 #include "evaluation/study_table_parts.h"
 #include "evaluation/text_table.h"
@@ -23,11 +25,7 @@ namespace {
 constexpr std::size_t kMostWideArms = 3;
 
 std::vector<TableCell> CellsOfArm(const StudyCell& cell, const Metric& metric) {
-  std::vector<double> values = cell.Values(metric.key);
-  // Signed errors that cancel are not accurate.
-  if (metric.better == Better::kNearZero) {
-    for (double& value : values) value = std::abs(value);
-  }
+  const std::vector<double> values = cell.Magnitudes(metric);
   const ErrorSummary summary = Summarize(values);
   TableCell median = NumberCell(summary.median, metric.decimals);
   if (values.size() > 1) {
@@ -49,46 +47,72 @@ std::vector<TableColumn> ColumnsOfArm(const Metric& metric, const std::string& g
   return columns;
 }
 
-/// Marks best and second among the medians at `at` of `rows`' cells. One that covers less than the
-/// best coverage beside it is not marked.
-void MarkBest(const Metric& metric, double coverage_tolerance, std::vector<TableCell*> medians,
-              const std::vector<double>& coverages) {
-  if (metric.better == Better::kNeither) return;
+/// An arm in a stream's contest.
+struct Contestant {
+  TableCell* median = nullptr;
+  /// The median score of all runs, a failed one's being the worst: infinite where half of them
+  /// failed. It is not the median that is shown, which is of those that did not fail.
+  double score = std::numeric_limits<double>::infinity();
+  double coverage = std::numeric_limits<double>::quiet_NaN();
+  double failed_share = 0.0;
+};
+
+/// Marks best and second among the contestants' medians. One that covers less, or fails more often,
+/// than the best of the others in that is not marked.
+void MarkBest(std::vector<Contestant> contestants, const StudyTableOptions& options) {
   double best_coverage = 0.0;
-  for (const double coverage : coverages) best_coverage = std::fmax(best_coverage, coverage);
-  std::vector<std::pair<double, TableCell*>> ranked;
-  int with_value = 0;
-  for (std::size_t i = 0; i < medians.size(); ++i) {
-    if (!std::isfinite(medians[i]->value)) continue;
-    ++with_value;
-    if (coverages[i] < best_coverage - coverage_tolerance) continue;
-    ranked.emplace_back(metric.Score(medians[i]->value), medians[i]);
+  double least_failed = 1.0;
+  for (const Contestant& one : contestants) {
+    best_coverage = std::fmax(best_coverage, one.coverage);
+    least_failed = std::fmin(least_failed, one.failed_share);
   }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  if (with_value < 2 || ranked.empty()) return;
+  std::erase_if(contestants,
+                [](const Contestant& one) { return !std::isfinite(one.median->value); });
+  if (contestants.size() < 2) return;
+  std::erase_if(contestants, [&](const Contestant& one) {
+    return one.coverage < best_coverage - options.coverage_tolerance ||
+           one.failed_share > least_failed + options.failure_tolerance || !std::isfinite(one.score);
+  });
+  if (contestants.empty()) return;
+  std::stable_sort(contestants.begin(), contestants.end(),
+                   [](const Contestant& a, const Contestant& b) { return a.score < b.score; });
   // Nobody is better where all are equal.
-  if (ranked.size() > 1 && ranked.front().first == ranked.back().first) return;
+  if (contestants.size() > 1 && contestants.front().score == contestants.back().score) return;
   TableMark mark = TableMark::kBest;
-  for (std::size_t i = 0; i < ranked.size() && mark != TableMark::kNone; ++i) {
-    if (i > 0 && ranked[i].first > ranked[i - 1].first) {
+  for (std::size_t i = 0; i < contestants.size() && mark != TableMark::kNone; ++i) {
+    if (i > 0 && contestants[i].score > contestants[i - 1].score) {
       // Where two share the first place there is no second.
       mark = mark == TableMark::kBest && i == 1 ? TableMark::kSecondBest : TableMark::kNone;
     }
-    ranked[i].second->mark = mark;
+    contestants[i].median->mark = mark;
   }
 }
 
+double MedianScoreOfAll(const StudyCell& cell, const Metric& metric) {
+  std::vector<double> scores;
+  for (const double value : cell.Values(metric.key)) scores.push_back(metric.Score(value));
+  if (scores.empty()) return std::numeric_limits<double>::infinity();
+  // Finite, so that the quantile between two of them is a number.
+  constexpr double kWorst = std::numeric_limits<double>::max() / 4.0;
+  scores.insert(scores.end(), static_cast<std::size_t>(cell.failed()), kWorst);
+  const double median = Summarize(scores).median;
+  return median < kWorst / 4.0 ? median : std::numeric_limits<double>::infinity();
+}
+
 void MarkStream(const StudyGrid& grid, std::size_t stream, const Metric& metric,
-                double coverage_tolerance, const std::vector<TableCell*>& medians) {
-  std::vector<double> coverages;
+                const StudyTableOptions& options, const std::vector<TableCell*>& medians) {
+  if (metric.better == Better::kNeither) return;
+  std::vector<Contestant> contestants;
   for (std::size_t a = 0; a < grid.arms().size(); ++a) {
+    const StudyCell& cell = grid.cell(stream, a);
     // Coverage itself is the metric that tells who covers less.
-    coverages.push_back(metric.key == "coverage_share"
-                            ? 1.0
-                            : Summarize(grid.cell(stream, a).Values("coverage_share")).median);
+    const double coverage =
+        metric.key == "coverage_share" ? 1.0 : Summarize(cell.Values("coverage_share")).median;
+    const double runs = std::max(1.0, static_cast<double>(cell.runs.size()));
+    contestants.push_back(
+        {medians[a], MedianScoreOfAll(cell, metric), coverage, cell.failed() / runs});
   }
-  MarkBest(metric, coverage_tolerance, medians, coverages);
+  MarkBest(std::move(contestants), options);
 }
 
 /// The arms side by side, and the mean of their medians over the streams.
@@ -114,7 +138,7 @@ void AddWideRows(const StudyGrid& grid, const Metric& metric, const StudyTableOp
     }
     std::vector<TableCell*> medians;
     for (const std::size_t at : median_at) medians.push_back(&row.cells[at]);
-    MarkStream(grid, s, metric, options.coverage_tolerance, medians);
+    MarkStream(grid, s, metric, options, medians);
     if (!IsChaosStream(options, grid.streams()[s])) {
       ++streams;
       for (std::size_t a = 0; a < sums.size(); ++a) sums[a] += medians[a]->value;
@@ -152,7 +176,7 @@ void AddLongRows(const StudyGrid& grid, const Metric& metric, const StudyTableOp
     for (std::size_t a = 0; a < grid.arms().size(); ++a) {
       medians.push_back(&table->rows[first + a].cells[1]);
     }
-    MarkStream(grid, s, metric, options.coverage_tolerance, medians);
+    MarkStream(grid, s, metric, options, medians);
   }
 }
 
@@ -168,81 +192,11 @@ StudyTable MetricTable(const StudyGrid& grid, const Metric& metric,
   }
   table.foot.push_back(
       "failed: of how many runs; coverage: median share of the span; one that covers " +
-      Number(options.coverage_tolerance, 2) + " less than another is not marked best");
+      Number(options.coverage_tolerance, 2) + " less than another, or fails in " +
+      Number(100.0 * options.failure_tolerance, 0) +
+      " % more of its runs, is not marked; failed runs rank worst");
   if (metric.better == Better::kNearZero) {
     table.foot.push_back("the median is of the magnitude of the error");
-  }
-  return table;
-}
-
-TableCell EffectCell(double value, const Band& interval, int decimals) {
-  TableCell cell = NumberCell(value, decimals);
-  cell.low = interval.low;
-  cell.high = interval.high;
-  return cell;
-}
-
-StudyTable PairedTable(const MetricComparison& comparison, const StudyTableOptions& options) {
-  const Metric& metric = comparison.metric;
-  StudyTable table;
-  table.name = metric.key + ".paired";
-  table.title = metric.Title() + ": pairs on the same stream and seed";
-  table.columns = {{.title = "stream", .is_text = true},
-                   {.title = "pairs"},
-                   {.title = "one failed"},
-                   {.title = "ratio", .spread = "95 % interval"},
-                   {.title = "difference", .unit = metric.unit, .spread = "95 % interval"},
-                   {.title = "p"},
-                   {.title = "p (Holm)"},
-                   {.title = "better", .is_text = true}};
-  for (const ArmComparison& arms : comparison.arms) {
-    table.rows.push_back({.section = arms.first + " / " + arms.second, .cells = {}});
-    for (const ComparisonRow& row : arms.rows) {
-      const PairedComparison& paired = row.paired;
-      table.rows.push_back(
-          {.section = "",
-           .cells = {TextCell(row.stream.empty() ? "all streams" : row.stream),
-                     NumberCell(paired.pairs, 0),
-                     TextCell(std::to_string(paired.only_first_failed) + " : " +
-                              std::to_string(paired.only_second_failed)),
-                     EffectCell(paired.ratio, paired.ratio_interval, 3),
-                     EffectCell(paired.difference, paired.difference_interval, metric.decimals),
-                     PValueCell(std::isnan(row.p_holm) ? row.p_holm : paired.test.p_value),
-                     PValueCell(row.p_holm), TextCell(DecisionText(arms, row.decision))}});
-    }
-  }
-  table.verdict = VerdictSentence(comparison);
-  table.foot = {
-      "ratio, difference: first / second, first - second, Hodges-Lehmann estimates of the pairs of "
-      "which both ran, with BCa bootstrap intervals (" +
-          std::to_string(options.bootstrap_resamples) + " resamples within each stream)",
-      "p: Wilcoxon's signed-rank test of the pairs, of both sides, zeros by Pratt's rule; a pair "
-      "of "
-      "which one run failed has the largest rank of all, to the other's favour; one of which both "
-      "failed is left out; exact up to 50 pairs; all streams: these streams, not others like them",
-      "runs on identical input (starts or jitter on one recording) are one pair, of their medians; "
-      "streams of one pair each are resampled together",
-      "p (Holm): corrected over the " + std::to_string(comparison.tests) +
-          " tests of this table; better where it is at most " + Number(options.alpha, 2)};
-  const auto few = [](const ComparisonRow& row) {
-    return row.paired.pairs >= kMinBootstrapValues && row.paired.pairs < 20;
-  };
-  if (std::any_of(comparison.arms.begin(), comparison.arms.end(), [&](const ArmComparison& arms) {
-        return std::any_of(arms.rows.begin(), arms.rows.end(), few);
-      })) {
-    table.foot.push_back(
-        "intervals of fewer than 20 pairs are too short: they hold the truth in about 92 of 100 "
-        "cases with 10 pairs, in 88 with 6; the test is exact");
-  }
-  for (const ArmComparison& arms : comparison.arms) {
-    if (std::isnan(arms.chaos_floor)) continue;
-    table.foot.push_back("chaos floor of " + arms.first + " / " + arms.second +
-                         ": two runs that differ by pixel jitter alone typically differ by " +
-                         (arms.overall().paired.is_ratio
-                              ? "a factor of " + Number(arms.chaos_floor, 3)
-                              : Number(arms.chaos_floor, metric.decimals) +
-                                    (metric.unit.empty() ? "" : " " + metric.unit)) +
-                         "; smaller differences are no verdict");
   }
   return table;
 }
@@ -276,9 +230,9 @@ std::vector<std::string> CommonFoot(const StudyGrid& grid, const StudyTableOptio
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   std::string lines;
   for (const std::string& id : ids) lines += id + "\n";
-  foot.push_back(
-      "study " + grid.study().name + ": made from " + std::to_string(ids.size()) +
-      " records, those of runs.csv; SHA-256 of their sorted ids, one a line: " + Sha256Hex(lines));
+  foot.push_back("study " + grid.study().name + ": made from " + std::to_string(ids.size()) +
+                 " different runs, those of runs.csv; SHA-256 of their sorted ids, one a line: " +
+                 Sha256Hex(lines));
   return foot;
 }
 
@@ -340,6 +294,9 @@ std::vector<StudyTable> MakeStudyTables(const StudyResult& study,
     table.verdict = VerdictSentence(comparison);
     tables.push_back(std::move(table));
     if (!comparison.arms.empty()) tables.push_back(PairedTable(comparison, options));
+    if (const auto gains = CompareGains(grid, metric, options)) {
+      tables.push_back(GainsTable(*gains, options));
+    }
   }
   if (!nees.empty()) tables.push_back(NeesTable(grid, nees, options));
   tables.push_back(FailureTable(grid, options));

@@ -69,6 +69,9 @@ struct StudyTableOptions {
   double alpha = 0.05;
   /// An estimator that covers less than the other by more than this is not called more accurate.
   double coverage_tolerance = 0.02;
+  /// One that fails in a larger share of its runs than another by more than this is not marked as
+  /// best or second, whatever the runs say that are left.
+  double failure_tolerance = 0.1;
   int bootstrap_resamples = 2000;
   /// Of published numbers to stand beside (ReadPublished); none where it is not given.
   std::shared_ptr<const Published> published;
@@ -77,10 +80,12 @@ struct StudyTableOptions {
 /// Every table of a study, from its records alone:
 ///   METRIC          for each metric but NEES: streams x (estimator, setting, perturbation), median
 ///                   [quartiles] of the runs that did not fail, runs, failures, coverage; best and
-///                   second of each stream marked
+///                   second of each stream marked, failed runs ranking worst
 ///   METRIC.paired   who is better: pairs on the same stream and seed (evaluation/paired_test.h),
 ///                   for each stream and over all of them, p-values corrected by Holm over the
 ///                   table
+///   METRIC.gains    where settings or perturbations are compared with a baseline: which of two
+///                   estimators gains more by each (evaluation/study_gains.h), likewise corrected
 ///   nees            NEES with its chi-squared band, where such a metric is asked for
 ///   sensitivity     whether the verdict depends on alignment and segment length, where the records
 ///                   have more than one measure of an error
@@ -91,6 +96,13 @@ struct StudyTableOptions {
 /// without runs.
 [[nodiscard]] std::vector<StudyTable> MakeStudyTables(const StudyResult& study,
                                                       const StudyTableOptions& options = {});
+
+/// The first table of a study, for its summary: each stream and (estimator, setting, perturbation)
+/// with its runs, failures, and one number a metric: what the metric's own table shows (median of
+/// the runs that did not fail; of signed errors the median magnitude; of NEES the mean over
+/// inputs), to the metric's digits. Throws InputError for a metric that there is not.
+[[nodiscard]] StudyTable SummaryTable(const StudyResult& study,
+                                      const std::vector<std::string>& metrics);
 
 /// For a terminal: aligned, best marked `*`, second `+`.
 [[nodiscard]] std::string TableText(const StudyTable& table);

@@ -6,6 +6,7 @@
 
 #include "evaluation/study_comparison.h"
 #include "evaluation/text_table.h"
+#include "evaluation/verdict_parts.h"
 
 namespace duet {
 namespace {
@@ -30,16 +31,6 @@ Sides SidesOf(const ArmComparison& arms, const PairedComparison& paired, bool fi
           -paired.difference, {-paired.difference_interval.high, -paired.difference_interval.low}};
 }
 
-std::string Count(int count, const char* noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
-std::string IntervalText(const Band& interval, int decimals) {
-  if (!std::isfinite(interval.low) || !std::isfinite(interval.high)) return "";
-  return "95 % interval " + Number(interval.low, decimals) + " to " +
-         Number(interval.high, decimals) + "; ";
-}
-
 /// How large, and how sure: "0.84 times that of msckf (95 % interval 0.79 to 0.90; 60 pairs on 3
 /// streams, p < 0.001 after Holm's correction)".
 std::string SizeText(const MetricComparison& comparison, const ArmComparison& arms,
@@ -61,28 +52,7 @@ std::string SizeText(const MetricComparison& comparison, const ArmComparison& ar
   } else {
     text = "there is no pair of which both ran";
   }
-  text += " (" + (paired.pairs > 0 ? IntervalText(interval, decimals) : "") +
-          Count(paired.pairs, "pair") + " on " + Count(arms.streams(), "stream") + ", " +
-          PValueText(arms.overall().p_holm) +
-          (comparison.tests > 1 ? " after Holm's correction" : "") + ")";
-  return text;
-}
-
-/// On how many streams alone the same is shown, and on how many the contrary.
-std::string StreamsText(const ArmComparison& arms, Decision decision) {
-  const Decision contrary =
-      decision == Decision::kFirstBetter ? Decision::kSecondBetter : Decision::kFirstBetter;
-  const int streams = arms.streams();
-  if (streams < 2) return "";
-  const auto end = arms.rows.begin() + streams;
-  const auto count = [&](Decision wanted) {
-    return std::count_if(arms.rows.begin(), end,
-                         [&](const ComparisonRow& row) { return row.decision == wanted; });
-  };
-  std::string text = ", shown on " + std::to_string(count(decision)) + " of " +
-                     std::to_string(streams) + " streams taken alone";
-  if (count(contrary) > 0) text += " and the contrary on " + std::to_string(count(contrary));
-  return text;
+  return text + EvidenceText(comparison, arms, interval, decimals);
 }
 
 std::string FailuresText(const ArmComparison& arms) {
@@ -90,17 +60,12 @@ std::string FailuresText(const ArmComparison& arms) {
   std::string text;
   const auto add = [&](int count, const std::string& name) {
     if (count == 0) return;
-    text += (text.empty() ? ", and " : " and ") + name + " alone failed in " + Count(count, "pair");
+    text +=
+        (text.empty() ? ", and " : " and ") + name + " alone failed in " + CountText(count, "pair");
   };
   add(paired.only_first_failed, arms.first);
   add(paired.only_second_failed, arms.second);
   return text;
-}
-
-/// DESIGN.md section 5.2: a verdict is given on at least three streams.
-std::string FewStreamsText(const ArmComparison& arms) {
-  if (arms.streams() >= 3) return "";
-  return ", on " + Count(arms.streams(), "stream") + " only: a general verdict takes three";
 }
 
 std::string DecidedClause(const MetricComparison& comparison, const ArmComparison& arms) {
@@ -123,15 +88,6 @@ std::string DecidedClause(const MetricComparison& comparison, const ArmCompariso
          SizeText(comparison, arms, sides) + end;
 }
 
-/// What so many pairs can show, so that "nothing" is read as it is meant.
-std::string DetectableText(const Metric& metric, const PairedComparison& paired) {
-  if (!std::isfinite(paired.detectable) || !(paired.detectable > 0.0)) return "";
-  const std::string size = paired.is_ratio ? Number(100.0 * (paired.detectable - 1.0), 1) + " %"
-                                           : Number(paired.detectable, metric.decimals) +
-                                                 (metric.unit.empty() ? "" : " " + metric.unit);
-  return "; so many pairs show a difference of " + size + " four times in five";
-}
-
 std::string UndecidedClause(const MetricComparison& comparison, const ArmComparison& arms) {
   const Metric& metric = comparison.metric;
   const ComparisonRow& overall = arms.overall();
@@ -142,14 +98,10 @@ std::string UndecidedClause(const MetricComparison& comparison, const ArmCompari
     case Decision::kEqual:
       return arms.first + " and " + arms.second + " have the same " + metric.words + " in " +
              (overall.paired.pairs == 1 ? "the only pair"
-                                        : "all " + Count(overall.paired.pairs, "pair"));
-    case Decision::kTooFew: {
-      int needed = 1;
-      while (std::ldexp(1.0, 1 - needed) > comparison.alpha) ++needed;
+                                        : "all " + CountText(overall.paired.pairs, "pair"));
+    case Decision::kTooFew:
       return "nothing can be said of " + metric.words + between + ": " +
-             Count(overall.paired.informative(), "pair") + " that differ cannot, " +
-             std::to_string(needed) + " can";
-    }
+             TooFewText(comparison, overall.paired);
     case Decision::kBelowChaos: {
       const std::string floor = overall.paired.is_ratio
                                     ? "a factor of " + Number(arms.chaos_floor, 3)
@@ -170,36 +122,11 @@ std::string UndecidedClause(const MetricComparison& comparison, const ArmCompari
       return metric.words + " differs" + between + ": " + size + FewStreamsText(arms);
     default:
       return "nothing can be said of " + metric.words + between + ": " + size +
-             DetectableText(metric, overall.paired) + FailuresText(arms);
+             DetectableText(comparison, overall.paired) + FailuresText(arms);
   }
-}
-
-bool IsDecided(Decision decision) {
-  return decision == Decision::kFirstBetter || decision == Decision::kSecondBetter;
-}
-
-std::string Joined(const std::vector<std::string>& clauses) {
-  std::string text;
-  for (const std::string& clause : clauses) text += (text.empty() ? "" : "; ") + clause;
-  return text;
-}
-
-std::string AsSentence(std::string text) {
-  // A name keeps its own spelling; what the program says begins with a capital.
-  for (const char* beginning : {"nothing can be said", "the difference in", "of the other"}) {
-    if (text.starts_with(beginning)) {
-      text[0] = static_cast<char>(text[0] - 'a' + 'A');
-    }
-  }
-  return text + ".";
 }
 
 }  // namespace
-
-std::string PValueText(double p) {
-  if (std::isnan(p)) return "no test";
-  return p < 0.001 ? "p < 0.001" : "p = " + Number(p, 3);
-}
 
 std::string VerdictSentence(const MetricComparison& comparison) {
   if (comparison.arms.empty()) return "There is nothing to compare.";
@@ -220,9 +147,9 @@ std::string VerdictSentence(const MetricComparison& comparison) {
     const bool all = undecided == static_cast<int>(comparison.arms.size());
     clauses.push_back(
         (all ? "nothing can be said of any of " : "nothing can be said of the other ") +
-        Count(undecided, "comparison") + " of " + comparison.metric.words);
+        CountText(undecided, "comparison") + " of " + comparison.metric.words);
   }
-  return AsSentence(Joined(clauses));
+  return SentenceOf(clauses);
 }
 
 }  // namespace duet

@@ -149,7 +149,7 @@ class Comparator {
       return child.exit_status;
     }
     RunRecord run = ReadRunRecord(folder, child, session_.recording.FrameStamps().front());
-    run.run.settings = SettingsFoot(session_.sources.values(), name, folder);
+    run.run.settings = SettingsFoot(session_.sources.values(), name, {folder});
     CHECK(run.tracks_sha256.empty() || comparison_.tracks_sha256.empty() ||
           run.tracks_sha256 == comparison_.tracks_sha256)
         << "the estimators ran on different tracks";

@@ -1,6 +1,7 @@
 #include "experiments/record_tables.h"
 
 #include <algorithm>
+#include <deque>
 #include <limits>
 #include <optional>
 
@@ -100,6 +101,36 @@ double ReadFeatureMean(std::string_view csv, const std::string& file, const std:
   int count = 0;
   for (; reader.Next(); ++count) sum += static_cast<double>(reader.Unsigned(index));
   return count == 0 ? std::numeric_limits<double>::quiet_NaN() : sum / count;
+}
+
+double ReadWindowSpan(std::string_view csv, const std::string& file, int frames) {
+  std::vector<std::string> names = ReadColumnNames(csv, file);
+  const auto index_of = [&](const char* column) {
+    const auto found = std::find(names.begin(), names.end(), column);
+    if (found == names.end()) throw InputError(file, 1, column, "expected this column");
+    return static_cast<int>(found - names.begin());
+  };
+  const int status = index_of("status");
+  const int keyframe = index_of("keyframe");
+  CsvReader reader(csv, file, {std::move(names)});
+  std::deque<Timestamp> window;
+  double sum_s = 0.0;
+  int count = 0;
+  while (reader.Next()) {
+    if (reader.Text(status) != "tracking" && reader.Text(status) != "dead reckoning") continue;
+    window.push_back(reader.CheckLater(0, reader.Stamp(0)));
+    const bool full = static_cast<int>(window.size()) >= frames;
+    if (full) {
+      sum_s += SecondsBetween(window.front(), window.back());
+      ++count;
+    }
+    if (reader.Unsigned(keyframe) == 0) {
+      if (window.size() > 1) window.erase(window.end() - 2);
+    } else if (full) {
+      window.pop_front();
+    }
+  }
+  return count == 0 ? std::numeric_limits<double>::quiet_NaN() : sum_s / count;
 }
 
 }  // namespace duet

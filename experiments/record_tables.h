@@ -32,4 +32,10 @@ struct RecordedCovariance {
 [[nodiscard]] double ReadFeatureMean(std::string_view csv, const std::string& file,
                                      const std::string& column);
 
+/// Mean time [s] between the oldest and the newest frame of an estimator's window that holds up to
+/// `frames`, from features.csv: each frame comes to the window; where the one before it stays
+/// (`keyframe`) the oldest goes once the window is full, else the one before. The mean is over
+/// frames whose window is full; NaN where it never was. Frames without an estimate are passed over.
+[[nodiscard]] double ReadWindowSpan(std::string_view csv, const std::string& file, int frames);
+
 }  // namespace duet

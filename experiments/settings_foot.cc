@@ -1,6 +1,8 @@
 #include "experiments/settings_foot.h"
 
 #include <cmath>
+#include <functional>
+#include <optional>
 #include <string_view>
 
 #include "common/support/numeric_text.h"
@@ -53,10 +55,37 @@ std::string EstimatedCalibration(const std::vector<ResolvedValue>& values) {
   return text.empty() ? "none" : text;
 }
 
+/// The mean over the records of what `read` tells of each features.csv; nothing where none tells.
+std::optional<double> MeanOverRecords(
+    const std::vector<std::filesystem::path>& folders,
+    const std::function<double(const std::string& csv, const std::string& file)>& read) {
+  double sum = 0.0;
+  int count = 0;
+  for (const std::filesystem::path& folder : folders) {
+    const std::filesystem::path features = folder / "features.csv";
+    if (!std::filesystem::exists(features)) continue;
+    const double value = read(ReadTextFile(features), features.string());
+    if (!std::isfinite(value)) continue;
+    sum += value;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
+
+int WindowFrames(const std::vector<ResolvedValue>& values, const std::string& estimator) {
+  for (const char* key : {".max_clones", ".max_frames"}) {
+    const std::string* value = ValueOf(values, estimator + key);
+    if (value == nullptr) continue;
+    if (const auto frames = ParseInt64(*value)) return static_cast<int>(*frames);
+  }
+  return 0;
+}
+
 }  // namespace
 
 Foot SettingsFoot(const std::vector<ResolvedValue>& values, const std::string& estimator,
-                  const std::filesystem::path& folder) {
+                  const std::vector<std::filesystem::path>& folders) {
   Foot foot;
   for (const FootRow& row : FootRows()) {
     for (const char* key : row.keys) {
@@ -68,11 +97,17 @@ Foot SettingsFoot(const std::vector<ResolvedValue>& values, const std::string& e
   if (const std::string* standstill = ValueOf(values, "shared.standstill.enabled")) {
     foot.emplace_back("standstill measurement", *standstill);
   }
-  const std::filesystem::path features = folder / "features.csv";
-  if (std::filesystem::exists(features)) {
-    const double used = ReadFeatureMean(ReadTextFile(features), features.string(), "used");
-    foot.emplace_back("landmarks used a frame", std::isfinite(used) ? FormatFixed(used, 1) : "-");
+  if (const int frames = WindowFrames(values, estimator); frames > 0) {
+    const auto span_s =
+        MeanOverRecords(folders, [&](const std::string& csv, const std::string& file) {
+          return ReadWindowSpan(csv, file, frames);
+        });
+    if (span_s) foot.emplace_back("seconds spanned by a full window", FormatFixed(*span_s, 2));
   }
+  const auto used = MeanOverRecords(folders, [](const std::string& csv, const std::string& file) {
+    return ReadFeatureMean(csv, file, "used");
+  });
+  if (used) foot.emplace_back("landmarks used a frame", FormatFixed(*used, 1));
   return foot;
 }
 

@@ -10,10 +10,10 @@
 namespace duet {
 
 /// What stands in a table's foot of one estimator (DESIGN.md section 5.5): what was switched on,
-/// from the settings, and how much the run used, from its record `folder` (skipped where there is
-/// none).
+/// from the settings, and how much was used, the mean over the records in `folders` (those without
+/// features.csv are skipped; of a run that failed, how much it used tells nothing: leave it out).
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> SettingsFoot(
     const std::vector<ResolvedValue>& values, const std::string& estimator,
-    const std::filesystem::path& folder);
+    const std::vector<std::filesystem::path>& folders);
 
 }  // namespace duet

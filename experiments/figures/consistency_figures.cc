@@ -17,37 +17,53 @@ constexpr double kConfidence = 0.95;
 // Where the mean is so many times what is expected, the band would be a line on a linear axis.
 constexpr double kLogarithmicFrom = 8.0;
 
-// Of one estimator: at each frame that all of its runs have, the mean over the runs.
+// Of one estimator: at each frame that all of its runs have, the mean over the inputs that they ran
+// on, of the mean over an input's runs: those share one draw of the noise.
 struct MeanNees {
   std::vector<double> t_s;
   std::vector<double> mean;
   int runs = 0;
+  int inputs = 0;
 };
 
-MeanNees MeanOverRuns(const std::vector<NeesRun>& runs, NeesBlock block) {
+struct RunOnInput {
+  std::string input;
+  NeesRun nees;
+};
+
+bool HasNees(const RunOnInput& run) { return !run.nees.failed && !run.nees.samples.empty(); }
+
+MeanNees MeanOverRuns(const std::vector<RunOnInput>& runs, NeesBlock block) {
   struct Sum {
-    double sum = 0.0;
+    double sum = 0.0;  // each run with the weight that it has among those on its input
     int count = 0;
   };
+  std::map<std::string, int> runs_on;
+  for (const RunOnInput& run : runs) {
+    if (HasNees(run)) ++runs_on[run.input];
+  }
   std::map<Timestamp, Sum> at;
   MeanNees mean;
+  mean.inputs = static_cast<int>(runs_on.size());
   Timestamp start = 0;
-  for (const NeesRun& run : runs) {
-    if (run.failed || run.samples.empty()) continue;
+  for (const RunOnInput& on_input : runs) {
+    if (!HasNees(on_input)) continue;
+    const NeesRun& run = on_input.nees;
+    const double weight = 1.0 / runs_on[on_input.input];
     start = mean.runs == 0 ? run.start : std::min(start, run.start);
     ++mean.runs;
     for (const NeesSample& sample : run.samples) {
       const std::optional<double>& value = sample.value[static_cast<std::size_t>(block)];
       if (!value) continue;
       Sum& sum = at[sample.timestamp];
-      sum.sum += *value;
+      sum.sum += weight * *value;
       ++sum.count;
     }
   }
   for (const auto& [stamp, sum] : at) {
     if (sum.count != mean.runs) continue;
     mean.t_s.push_back(SecondsBetween(start, stamp));
-    mean.mean.push_back(sum.sum / sum.count);
+    mean.mean.push_back(sum.sum / mean.inputs);
   }
   return mean;
 }
@@ -59,13 +75,17 @@ Figure NeesOverTimeFigure(const FigureInput& input) {
   Figure figure;
   figure.sources = DescribeSources(runs);
   const std::vector<std::string> estimators = EstimatorsOf(runs);
-  std::map<std::string, std::vector<NeesRun>> nees;
+  std::map<std::string, std::vector<RunOnInput>> nees;
+  bool shared_input = false;
   int missing = 0;
   for (const FigureRun& run : runs) {
     if (run.where.failed) {
       ++missing;
     } else {
-      nees[run.where.estimator].push_back(NeesOf(run));
+      // Where the input is not known each run has its own.
+      const std::string ran_on =
+          run.where.stream_id.empty() ? run.folder.string() : run.where.stream_id;
+      nees[run.where.estimator].push_back({ran_on, NeesOf(run)});
     }
   }
 
@@ -85,7 +105,8 @@ Figure NeesOverTimeFigure(const FigureInput& input) {
       if (mean.t_s.empty()) continue;
       end_s = std::max(end_s, mean.t_s.back());
       highest = std::max(highest, *std::max_element(mean.mean.begin(), mean.mean.end()));
-      counts.push_back(mean.runs);
+      counts.push_back(mean.inputs);
+      shared_input = shared_input || mean.inputs < mean.runs;
       const std::string legend = estimators[n] + ", " + CountOfRuns(mean.runs);
       panel.series.push_back(LineSeries(estimators[n], legend, LookOfEstimator(estimators[n], n),
                                         mean.t_s, mean.mean));
@@ -93,10 +114,12 @@ Figure NeesOverTimeFigure(const FigureInput& input) {
     if (counts.empty()) {
       throw InputError(runs.front().folder.string() + " and its like have no NEES to draw");
     }
-    // Most often one band: all estimators have as many runs.
+    // Most often one band: all estimators have as many runs. Runs on one input are one draw.
     for (const int count : std::set<int>(counts.begin(), counts.end())) {
       const Band band = MeanChiSquaredBand(dof, count, kConfidence);
-      const std::string of = CountOfRuns(count);
+      const std::string of = shared_input
+                                 ? std::to_string(count) + (count == 1 ? " input" : " inputs")
+                                 : CountOfRuns(count);
       Series bars =
           BarSeries("band of " + of, "95 % band of " + of, {.colour = kGrey, .opacity = 0.3});
       AddBar(0.0, end_s, band.low, band.high, &bars);
@@ -113,6 +136,10 @@ Figure NeesOverTimeFigure(const FigureInput& input) {
   figure.notes.push_back(
       "Mean over the runs at each frame, without alignment; a consistent estimator is within the "
       "band at 95 % of the frames (which depend on one another).");
+  if (shared_input) {
+    figure.notes.push_back(
+        "Runs on one input share its noise: the band is of as many runs as there are inputs.");
+  }
   if (missing > 0) figure.notes.push_back(CountOfRuns(missing) + " failed: left out.");
   return figure;
 }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "common/config/config_sources.h"
 #include "common/dataset/csv_reader.h"
@@ -60,33 +62,120 @@ std::string Count(std::size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-/// What was switched on in the first record of each estimator and setting.
-void AddFoot(const StudyFolder& folder, std::vector<std::string>* foot) {
-  std::vector<std::string> seen;
-  std::optional<RecordVersion> version;
-  std::size_t records = 0;
+const double* FindValue(const StudyRun& run, const std::string& key) {
+  for (const auto& [name, value] : run.metrics) {
+    if (name == key) return &value;
+  }
+  return nullptr;
+}
+
+/// The cells of one estimator and setting.
+struct FootGroup {
+  std::string estimator;
+  std::string setting;
+  std::vector<fs::path> records;  ///< different ones, in their order
+  std::vector<fs::path> ran;      ///< those of them that did not fail
+};
+
+std::vector<FootGroup> FootGroups(const StudyFolder& folder) {
+  std::vector<FootGroup> groups;
   for (std::size_t i = 0; i < folder.result.runs.size(); ++i) {
     const StudyRun& run = folder.result.runs[i];
     const fs::path& record = folder.record_of_run[i];
     if (record.empty()) continue;
-    ++records;
-    const std::string name = run.estimator + ", " + run.setting;
-    if (std::find(seen.begin(), seen.end(), name) != seen.end()) continue;
-    seen.push_back(name);
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const FootGroup& g) {
+      return g.estimator == run.estimator && g.setting == run.setting;
+    });
+    if (group == groups.end()) group = groups.insert(group, {run.estimator, run.setting, {}, {}});
+    if (std::find(group->records.begin(), group->records.end(), record) != group->records.end()) {
+      continue;
+    }
+    group->records.push_back(record);
+    if (!run.failed) group->ran.push_back(record);
+  }
+  return groups;
+}
+
+/// In one line, as a person reads it.
+std::string ValueText(const YamlNode& node) {
+  if (node.kind == YamlNode::Kind::kScalar) return node.scalar;
+  std::string text;
+  for (const YamlNode& item : node.items) text += (text.empty() ? "" : ", ") + ValueText(item);
+  for (const YamlNode::Entry& entry : node.entries) {
+    text += (text.empty() ? "" : ", ") + entry.key + ": " + ValueText(entry.value);
+  }
+  return node.kind == YamlNode::Kind::kNull ? "null" : "[" + text + "]";
+}
+
+/// "shared.calibration.t_d.state: estimated, ..."
+std::string KeysText(const std::vector<StudyKey>& keys) {
+  std::string text;
+  for (const StudyKey& key : keys) {
+    text += (text.empty() ? "" : ", ") + key.key + ": " + ValueText(key.value);
+  }
+  return text;
+}
+
+/// What a setting or perturbation changes; that of a study's only one is below every run alike.
+void AddChange(const char* axis, const StudyChange& change, std::vector<std::string>* foot) {
+  std::string text = KeysText(change.set);
+  for (const auto& [estimator, keys] : change.only) {
+    text += (text.empty() ? "" : "; ") + ("for " + estimator + " alone ") + KeysText(keys);
+  }
+  if (!text.empty()) foot->push_back(std::string(axis) + " " + change.name + ": " + text);
+}
+
+/// What each stream was seen by and for how long, from its first record.
+void AddStreams(const StudyFolder& folder, std::vector<std::string>* foot) {
+  std::vector<std::string> seen;
+  for (std::size_t i = 0; i < folder.result.runs.size(); ++i) {
+    const std::string& stream = folder.result.runs[i].stream;
+    if (folder.record_of_run[i].empty()) continue;
+    if (std::find(seen.begin(), seen.end(), stream) != seen.end()) continue;
+    seen.push_back(stream);
+    const fs::path file = folder.record_of_run[i] / "manifest.json";
+    const auto manifest = nlohmann::json::parse(ReadTextFile(file), nullptr, false);
+    if (!manifest.is_object() || !manifest.contains("dataset")) continue;
+    const auto& dataset = manifest["dataset"];
+    const auto cameras = dataset.find("cameras");
+    const double* duration = FindValue(folder.result.runs[i], "truth.duration_s");
+    std::string text = stream + ":";
+    if (cameras != dataset.end() && cameras->is_array()) {
+      text += cameras->size() == 1 ? " camera" : " cameras";
+      for (const auto& camera : *cameras) text += " " + camera.dump();
+    }
+    if (duration != nullptr) text += ", truth over " + FormatFixed(*duration, 1) + " s of a run";
+    foot->push_back(text);
+  }
+}
+
+/// What was switched on in the records of each estimator and setting, what the settings and
+/// perturbations change, and what the streams are.
+void AddFoot(const StudyFolder& folder, std::vector<std::string>* foot) {
+  std::optional<RecordVersion> version;
+  for (const FootGroup& group : FootGroups(folder)) {
+    const fs::path& record = group.records.front();
     if (!version) version = VersionOf(record);
     ConfigSources sources;
     sources.AddFile(record / "config.yaml");
     Configuration configuration;
     configuration.Read(&sources);
-    std::string line = name + ":";
-    for (const auto& [title, value] : SettingsFoot(sources.values(), run.estimator, record)) {
+    std::string line = group.estimator + ", " + group.setting + ":";
+    for (const auto& [title, value] : SettingsFoot(sources.values(), group.estimator, group.ran)) {
       line += (line.back() == ':' ? " " : ", ") + title + " " + value;
     }
     foot->push_back(line);
   }
-  foot->push_back("made from " + Count(records, "record") + " of " +
-                  Count(folder.result.runs.size(), "run") +
-                  (version ? " by " + version->Text() : ""));
+  for (const StudyChange& setting : folder.study.settings) AddChange("setting", setting, foot);
+  for (const StudyChange& change : folder.study.perturbations) {
+    AddChange("perturbation", change, foot);
+  }
+  AddStreams(folder, foot);
+  std::set<fs::path> records(folder.record_of_run.begin(), folder.record_of_run.end());
+  records.erase(fs::path());
+  foot->push_back(Count(records.size(), "record") + " for " +
+                  Count(folder.result.runs.size(), "cell") + " of the grid" +
+                  (version ? ", by " + version->Text() : ""));
 }
 
 std::string Quoted(const std::string& text) {
@@ -94,13 +183,6 @@ std::string Quoted(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + "\"";
-}
-
-const double* FindValue(const StudyRun& run, const std::string& key) {
-  for (const auto& [name, value] : run.metrics) {
-    if (name == key) return &value;
-  }
-  return nullptr;
 }
 
 /// Every key of any run; those of later runs stand behind the key that they follow there.

@@ -84,7 +84,7 @@ TEST_F(StudyTest, ARecordHoldsWhatItSaysAndTheTablesComeOfIt) {
   const std::string runs = ReadFile(fs::path(out_) / "runs.csv");
   EXPECT_THAT(runs, HasSubstr("id,stream,estimator,setting,perturbation,seed,failed,reason,"));
   EXPECT_EQ(std::count(runs.begin(), runs.end(), '\n'), 5);
-  EXPECT_THAT(result.out, HasSubstr("made from 4 records of 4 runs"));
+  EXPECT_THAT(result.out, HasSubstr("4 records for 4 cells of the grid"));
   for (const char* made : {"tables/ate.position_m.tex", "tables/ate.position_m.paired.csv",
                            "figures/rmse_over_runs.csv", "report.html"}) {
     EXPECT_TRUE(fs::exists(fs::path(out_) / made)) << made;

@@ -12,6 +12,8 @@
 
 #include "common/support/input_error.h"
 #include "common/support/random.h"
+#include "evaluation/chi_squared.h"
+#include "evaluation/failure_reasons.h"
 #include "test/seeds.h"
 
 namespace duet {
@@ -235,6 +237,157 @@ TEST(StudyTable, BestAndSecondAreMarkedByDirection) {
   EXPECT_EQ(higher.rows[0].cells[5].mark, TableMark::kSecondBest);
 }
 
+TEST(StudyTable, WhoFailsMoreIsNotMarkedBestOfItsSurvivors) {
+  SyntheticStudy synthetic;
+  synthetic.streams = {"room"};
+  synthetic.estimators = {"a", "b", "c"};
+  synthetic.factor = [](const StudyRun& run) {
+    return run.estimator == "a" ? 0.1 : run.estimator == "b" ? 1.0 : 2.0;
+  };
+  StudyResult study = MakeStudy(synthetic);
+  StudyTableOptions options;
+  options.metrics = {"ate.position_m"};
+  options.bootstrap_resamples = 0;
+  const auto marks = [&](int failed_of_a, int failed_of_others) {
+    for (StudyRun& run : study.runs) {
+      run.failed = run.seed <= (run.estimator == "a" ? failed_of_a : failed_of_others);
+    }
+    const StudyTable table = MakeStudyTables(study, options).front();
+    return std::vector<TableMark>{table.rows[0].cells[1].mark, table.rows[0].cells[4].mark,
+                                  table.rows[0].cells[7].mark};
+  };
+  using enum TableMark;
+  EXPECT_EQ(marks(0, 0), (std::vector{kBest, kSecondBest, kNone}));
+  EXPECT_EQ(marks(2, 0), (std::vector{kBest, kSecondBest, kNone}));  // 10 % are no matter
+  EXPECT_EQ(marks(3, 0), (std::vector{kNone, kBest, kSecondBest}));
+  EXPECT_EQ(marks(12, 11), (std::vector{kNone, kNone, kNone}));  // the median run of each fails
+  // Of runs that nearly half failed the median is among the worst survivors.
+  EXPECT_EQ(marks(8, 8), (std::vector{kBest, kSecondBest, kNone}));
+}
+
+TEST(StudyTable, SixPairsOneWayAreTooFewForThreeTests) {
+  SyntheticStudy synthetic;
+  synthetic.streams = {"room", "hall"};
+  synthetic.seeds = 6;
+  synthetic.factor = [](const StudyRun& run) { return run.estimator == "window" ? 0.3 : 1.0; };
+  const auto tables = PositionTables(synthetic);
+  const StudyTable& paired = TableNamed(tables, "ate.position_m.paired");
+  EXPECT_EQ(paired.rows[1].cells[5].value, 1.0 / 32.0);
+  // All 12 pairs pass (p = 2^-11, three times that by Holm), and those of one stream cannot.
+  EXPECT_EQ(paired.rows[1].cells.back().text, "too few pairs");
+  EXPECT_EQ(paired.rows.back().cells.back().text, "window");
+  EXPECT_THAT(paired.verdict, HasSubstr("with too few pairs to show it on one stream alone"));
+  EXPECT_THAT(paired.verdict, Not(HasSubstr("taken alone")));
+  // One stream has enough: said of how many that is so.
+  synthetic.seeds = 7;
+  StudyResult study = MakeStudy(synthetic);
+  std::erase_if(study.runs,
+                [](const StudyRun& run) { return run.stream == "hall" && run.seed > 5; });
+  StudyTableOptions options;
+  options.metrics = {"ate.position_m"};
+  options.bootstrap_resamples = 0;
+  EXPECT_THAT(
+      TableNamed(MakeStudyTables(study, options), "ate.position_m.paired").verdict,
+      HasSubstr("shown on 1 of 2 streams taken alone (1 of them with too few pairs for it)"));
+  // Nothing at all can be shown: how many could.
+  std::erase_if(study.runs, [](const StudyRun& run) { return run.seed > 3; });
+  EXPECT_THAT(TableNamed(MakeStudyTables(study, options), "ate.position_m.paired").verdict,
+              HasSubstr("6 pairs that differ cannot among 3 tests, 7 can"));
+}
+
+TEST(StudyTable, WithoutAnyPairTheSentenceSaysWhy) {
+  SyntheticStudy synthetic;
+  synthetic.streams = {"room"};
+  StudyResult study = MakeStudy(synthetic);
+  StudyTableOptions options;
+  options.metrics = {"ate.position_m"};
+  for (StudyRun& run : study.runs) {
+    if (run.estimator == "window") run.metrics[0].second = std::nan("");
+  }
+  EXPECT_THAT(TableNamed(MakeStudyTables(study, options), "ate.position_m.paired").verdict,
+              HasSubstr("there is no pair with a value of both"));
+}
+
+TEST(StudyTable, PValueOfPairsThatFailedIsSaidToBeOfThemToo) {
+  SyntheticStudy synthetic;
+  synthetic.streams = {"room"};
+  synthetic.seeds = 8;
+  synthetic.factor = [](const StudyRun& run) { return run.estimator == "window" ? 2.0 : 1.0; };
+  StudyResult study = MakeStudy(synthetic);
+  for (StudyRun& run : study.runs) run.failed = run.estimator == "window" && run.seed > 4;
+  StudyTableOptions options;
+  options.metrics = {"ate.position_m"};
+  EXPECT_THAT(
+      TableNamed(MakeStudyTables(study, options), "ate.position_m.paired").verdict,
+      HasSubstr("(4 pairs of which both ran on 1 stream, p = 0.008 of these and 4 pairs of which "
+                "one failed)"));
+}
+
+TEST(StudyTable, StreamByTwoNamesIsOneObservation) {
+  SyntheticStudy synthetic;
+  synthetic.streams = {"room", "hall"};
+  synthetic.seeds = 6;
+  synthetic.factor = [](const StudyRun& run) { return run.estimator == "window" ? 0.3 : 1.0; };
+  StudyResult study = MakeStudy(synthetic);
+  for (StudyRun& run : study.runs) run.stream_id = run.stream + std::to_string(run.seed);
+  const std::vector<StudyRun> runs = study.runs;
+  StudyTableOptions options;
+  options.metrics = {"ate.position_m"};
+  options.bootstrap_resamples = 100;
+  const StudyTable before = TableNamed(MakeStudyTables(study, options), "ate.position_m.paired");
+  for (StudyRun run : runs) {
+    if (run.stream != "room") continue;
+    run.stream = "room again";
+    study.runs.push_back(run);
+  }
+  const StudyTable after = TableNamed(MakeStudyTables(study, options), "ate.position_m.paired");
+  EXPECT_EQ(after.rows.size(), before.rows.size() + 1);
+  const TableRow& all = after.rows.back();
+  EXPECT_EQ(all.cells[1].value, 12.0);
+  EXPECT_EQ(all.cells[3].value, before.rows.back().cells[3].value);
+  EXPECT_EQ(all.cells[3].low, before.rows.back().cells[3].low);
+  EXPECT_EQ(all.cells[5].value, before.rows.back().cells[5].value);
+  EXPECT_THAT(after.verdict, HasSubstr("12 pairs on 2 streams"));
+  EXPECT_THAT(after.verdict, HasSubstr("on 2 streams only: a general verdict takes three"));
+  EXPECT_THAT(after.foot, testing::Contains(HasSubstr("room again: its input is that of another")));
+}
+
+TEST(StudyTable, SummaryHasTheNumbersOfTheTables) {
+  SyntheticStudy synthetic;
+  synthetic.streams = {"room"};
+  synthetic.seeds = 3;
+  StudyResult study = MakeStudy(synthetic);
+  study.question = "who?";
+  for (StudyRun& run : study.runs) {
+    // Signed errors that cancel: -0.002, 0.0005, 0.001.
+    run.metrics.emplace_back("calibration.t_d.error", run.seed == 1   ? -0.002
+                                                      : run.seed == 2 ? 0.0005
+                                                                      : 0.001);
+    run.metrics[2].second = 2.0 * run.seed * run.seed;
+    run.metrics.emplace_back("frame_ms.median", 1.2345);
+  }
+  const StudyTable table = SummaryTable(
+      study, {"coverage_share", "calibration.t_d.error", "nees.pose", "frame_ms.median"});
+  EXPECT_EQ(table.columns[4].title, "error of t_d at the end");
+  EXPECT_EQ(table.columns[4].unit, "s");
+  const std::string text = TableText(table);
+  EXPECT_THAT(text, testing::StartsWith("synthetic: who?\n"));
+  EXPECT_THAT(text, testing::ContainsRegex("msckf +3 +0 +0.990 +0.001000 +9.33 +1.23"));
+  EXPECT_THAT(text, HasSubstr("of errors with a sign, of their magnitudes; of NEES the"));
+  EXPECT_THROW((void)SummaryTable(study, {"ate.positon_m"}), InputError);
+}
+
+TEST(FailureReasons, ThoseThatDifferInNumbersAloneAreOne) {
+  EXPECT_EQ(CommonestReason({}), "");
+  EXPECT_EQ(CommonestReason({"diverged", "diverged"}), "diverged");
+  EXPECT_EQ(
+      CommonestReason({"no frame", "the velocity of cam0 is 1.9 m/s", "no state",
+                       "the velocity of cam0 is 1.602 m/s", "the velocity of cam0 is 12 m/s"}),
+      "the velocity of cam0 is 1.602 to 12 m/s (3)");
+  EXPECT_EQ(CommonestReason({"at -1e-3 s, 5 of 8", "at 2 s, 5 of 8"}), "at -1e-3 to 2 s, 5 of 8");
+  EXPECT_EQ(CommonestReason({"cam0 is lost", "cam1 is lost", "cam1 is lost"}), "cam1 is lost (2)");
+}
+
 TEST(StudyTable, SettingsAreComparedWithTheBaselineForEachEstimator) {
   SyntheticStudy synthetic;
   synthetic.settings = {"default", "short"};
@@ -258,7 +411,7 @@ TEST(StudyTable, RepeatedRecordCountsOnce) {
   options.metrics = {"ate.position_m"};
   const auto tables = MakeStudyTables(study, options);
   EXPECT_EQ(TableNamed(tables, "ate.position_m.paired").rows.back().cells[1].value, 1.0);
-  EXPECT_THAT(tables.front().foot.back(), HasSubstr("made from 2 records"));
+  EXPECT_THAT(tables.front().foot.back(), HasSubstr("made from 2 different runs"));
 }
 
 TEST(StudyTable, StartsInOneRecordingAreOneObservation) {
@@ -319,9 +472,40 @@ TEST(StudyTable, NeesStandsBesideItsBand) {
   EXPECT_THAT(nees.verdict, HasSubstr("covariance of msckf is refuted in none of 6 tests"));
   EXPECT_THAT(nees.verdict, HasSubstr("covariance of window is too sure in 3 of 6 tests"));
   const TableRow& calibration = nees.rows[2];
-  EXPECT_EQ(calibration.cells[3].value, 56.0);
-  EXPECT_LT(calibration.cells[5].value, 56.0);
-  EXPECT_GT(calibration.cells[6].value, 56.0);
+  EXPECT_EQ(calibration.cells[4].value, 56.0);
+  EXPECT_LT(calibration.cells[6].value, 56.0);
+  EXPECT_GT(calibration.cells[7].value, 56.0);
+}
+
+// 20 runs on one recording share one draw of its noise.
+TEST(StudyTable, NeesOfRunsOnOneRecordingIsOneValue) {
+  SyntheticStudy synthetic;
+  synthetic.streams = {"room"};
+  StudyResult study = MakeStudy(synthetic);
+  for (StudyRun& run : study.runs) {
+    run.stream_id = "recording";
+    run.metrics[2].second = 10.0 + run.seed;
+  }
+  StudyTableOptions options;
+  options.metrics = {"nees.pose"};
+  const StudyTable one = TableNamed(MakeStudyTables(study, options), "nees");
+  EXPECT_EQ(one.rows[1].cells[2].value, 20.0);
+  EXPECT_EQ(one.rows[1].cells[3].value, 1.0);
+  EXPECT_EQ(one.rows[1].cells.back().text, "one input, no verdict");
+  EXPECT_THAT(one.verdict, HasSubstr("it takes runs with one on two inputs"));
+  // 19 runs on one of two recordings have no more weight than the one on the other: means of 10.5
+  // (seeds 2 ... 20 lifted to it) and 3.5, where 19 of 20 runs say 10.5.
+  for (StudyRun& run : study.runs) {
+    run.stream_id = run.seed == 1 ? "first" : "second";
+    run.metrics[2].second = run.seed == 1 ? 3.5 : 10.5;
+  }
+  const StudyTable two = TableNamed(MakeStudyTables(study, options), "nees");
+  EXPECT_EQ(two.rows[1].cells[3].value, 2.0);
+  EXPECT_EQ(two.rows[1].cells[5].value, 7.0);
+  const Band band = MeanChiSquaredBand(6.0, 2, 0.95);
+  EXPECT_EQ(two.rows[1].cells[6].value, band.low);
+  EXPECT_EQ(two.rows[1].cells[7].value, band.high);
+  EXPECT_EQ(two.rows[1].cells.back().text, "not refuted");
 }
 
 TEST(StudyTable, SensitivityTellsWhereMeasuresDisagree) {
