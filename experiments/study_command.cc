@@ -1,6 +1,5 @@
 #include <gflags/gflags.h>
 
-
 #include "common/support/input_error.h"
 #include "experiments/commands.h"
 #include "experiments/common_flags.h"

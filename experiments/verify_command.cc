@@ -18,8 +18,8 @@ int RunVerify(const CommandLine& line) {
   }
   const std::filesystem::path folder = line.operands().front();
   // A search (duet tune) has no pictures.
-  const bool has_pictures = std::filesystem::exists(folder / "report.html") ||
-                            !ReadProducts(folder).empty();
+  const bool has_pictures =
+      std::filesystem::exists(folder / "report.html") || !ReadProducts(folder).empty();
   const StudyVerification found =
       VerifyStudy(folder, has_pictures ? StudyDerivation(PictureTexts) : nullptr);
   if (Interrupted()) return kInterrupted;

@@ -55,18 +55,14 @@ MeanNees MeanOverRuns(const std::vector<NeesRun>& runs, NeesBlock block) {
 }  // namespace
 
 Figure NeesOverTimeFigure(const FigureInput& input) {
-  const std::vector<FigureRun> runs = RunsOfFirstGroup(FindRuns(input.folders));
+  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const std::vector<FigureRun> runs = RunsOfFirstGroup(all);
   Figure figure;
   figure.sources = DescribeSources(runs);
   const std::vector<std::string> estimators = EstimatorsOf(runs);
   std::map<std::string, std::vector<NeesRun>> nees;
-  int missing = 0;
   for (const FigureRun& run : runs) {
-    if (run.where.failed) {
-      ++missing;
-    } else {
-      nees[run.where.estimator].push_back(NeesOf(run));
-    }
+    if (!run.where.failed) nees[run.where.estimator].push_back(NeesOf(run));
   }
 
   constexpr std::array<NeesBlock, 3> kBlocks = {NeesBlock::kPose, NeesBlock::kOrientation,
@@ -113,7 +109,8 @@ Figure NeesOverTimeFigure(const FigureInput& input) {
   figure.notes.push_back(
       "Mean over the runs at each frame, without alignment; a consistent estimator is within the "
       "band at 95 % of the frames (which depend on one another).");
-  if (missing > 0) figure.notes.push_back(CountOfRuns(missing) + " failed: left out.");
+  AddNote(FailedNote(runs, "left out"), &figure);
+  AddNote(DrawnNote(all, runs), &figure);
   return figure;
 }
 

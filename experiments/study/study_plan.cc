@@ -141,6 +141,13 @@ class Planner {
     }
     ConfigSources sources;
     const SimulationOptions options = SimulationOf(study(), stream, 1, &sources);
+    if (options.duration_s <= 0.0) {  // not every motion has an end of its own
+      try {
+        (void)MakeScenario(options, /*textures=*/false);
+      } catch (const InputError& error) {
+        throw InputError(study().file, stream.line, "streams." + stream.name, error.what());
+      }
+    }
     const double rate_hz = options.camera_rate_hz;
     frames_ = static_cast<int>(options.duration_s * rate_hz) + 1;
   }

@@ -177,8 +177,8 @@ class StudyVerifier {
   void VerifyPlan() {
     const fs::path file = folder_ / "study.yaml";
     try {
-      const StudyPlan plan = MakeStudyPlan(ReadStudyFile(file, /*quick=*/false), "",
-                                           ReadRecordings(folder_));
+      const StudyPlan plan =
+          MakeStudyPlan(ReadStudyFile(file, /*quick=*/false), "", ReadRecordings(folder_));
       if (PlanCsv(plan) != ReadTextFile(folder_ / "plan.csv")) {
         Problem(folder_ / "plan.csv", "is not the grid that study.yaml gives");
       }

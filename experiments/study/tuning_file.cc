@@ -96,14 +96,15 @@ void CheckReportStreams(const TuningFile& tuning, const std::string& file, int l
       MakePathsAbsolute(file, "", &search);
       const SeedRange a = seeds_of(report, tuning.report_seeds);
       const SeedRange b = seeds_of(search, study.seeds);
-      const bool same = report.simulated()
-                            ? report.simulate == search.simulate && a.first <= b.last &&
-                                  b.first <= a.last
-                            : report.dataset == search.dataset && SpansOverlap(report, search);
+      const bool same =
+          report.simulated()
+              ? report.simulate == search.simulate && a.first <= b.last && b.first <= a.last
+              : report.dataset == search.dataset && SpansOverlap(report, search);
       if (!same) continue;
       throw InputError(
           file, line, "report_streams",
-          "'" + report.name + "' of the report is what the search runs on: what was tuned on it is "
+          "'" + report.name +
+              "' of the report is what the search runs on: what was tuned on it is "
               "not judged on it; expected other recordings, other parts of them (starts_s, "
               "duration_s), or other seeds of a simulation");
     }
@@ -221,7 +222,8 @@ TuningFile ParseTuningFile(std::string_view yaml, const fs::path& path, bool qui
   const std::string file = path.string();
   YamlNode root = ParseYaml(yaml, file);
   if (root.kind != YamlNode::Kind::kMap) throw InputError(file, 0, "", "expected keys with values");
-  const std::set<std::string> own = {"budget", "objective", "report_seeds", "report_streams", "search"};
+  const std::set<std::string> own = {"budget", "objective", "report_seeds", "report_streams",
+                                     "search"};
   // quick may change the search too.
   YamlNode tuning = root;
   if (const YamlNode* changes = quick ? root.Find("quick") : nullptr) {

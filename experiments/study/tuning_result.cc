@@ -81,9 +81,8 @@ std::string SearchCsv(const StudyFile& study, const std::vector<TuningTrial>& tr
   for (const TuningTrial& trial : trials) {
     text += trial.estimator + "," + trial.setting + "," + std::to_string(trial.runs) + "," +
             std::to_string(trial.failed) + "," + std::to_string(trial.without) + "," +
-            FormatNumber(trial.coverage) + "," +
-            FormatNumber(trial.objective) + "," + FormatNumber(trial.ratio) + "," +
-            KeysText(study, trial) + "\n";
+            FormatNumber(trial.coverage) + "," + FormatNumber(trial.objective) + "," +
+            FormatNumber(trial.ratio) + "," + KeysText(study, trial) + "\n";
   }
   return text;
 }
@@ -140,9 +139,9 @@ std::vector<TuningTrial> TuningTrials(const StudyResult& result, const std::stri
     const std::optional<double> value = MetricOfRun(run, objective);
     if (run.setting == defaults && !run.failed && value) of_defaults[PairOf(run)] = *value;
   }
-  const bool is_held = std::any_of(result.runs.begin(), result.runs.end(), [&](const StudyRun& run) {
-    return run.failed || MetricOfRun(run, objective);
-  });
+  const bool is_held =
+      std::any_of(result.runs.begin(), result.runs.end(),
+                  [&](const StudyRun& run) { return run.failed || MetricOfRun(run, objective); });
   if (!is_held) {
     throw InputError("", 0, "objective",
                      "no run holds '" + objective +

@@ -108,6 +108,36 @@ TEST(StudyPlanTest, ThePlansTableReadsBack) {
                                        ",room,msckf,default,none,2\n"));
 }
 
+TEST(StudyPlanTest, ThePlansYamlGivesTheSamePlanFromAnywhere) {
+  const StudyPlan plan = PlanOf(WithStream(
+      "{name: a, simulate: room_easy, jitter_px: 0.01, set: {simulation.pixel_noise_px: 0.4}}",
+      "set: {shared.pixel_noise_px: 2}\nseeds: 2..3\nfigures: []\nskip_missing: true\n"
+      "settings: [{name: x}, {name: y, only: {msckf: {msckf.max_clones: 9}}}]\n"));
+  const StudyFile again = ParseStudyFile(StudyYaml(plan.study), "elsewhere/study.yaml", false);
+  EXPECT_EQ(PlanCsv(MakeStudyPlan(again, "")), PlanCsv(plan));
+  EXPECT_TRUE(again.skip_missing);
+  ASSERT_TRUE(again.figures.has_value());
+  EXPECT_TRUE(again.figures->empty());
+  // Paths count from the study's file, or from --data.
+  StudyStream stream;
+  stream.dataset = "MH";
+  MakePathsAbsolute("/studies/s.yaml", "", &stream);
+  EXPECT_EQ(stream.dataset, "/studies/MH");
+  stream.dataset = "MH";
+  MakePathsAbsolute("/studies/s.yaml", "/data", &stream);
+  EXPECT_EQ(stream.dataset, "/data/MH");
+}
+
+TEST(StudyPlanTest, SeedsAreNoMoreThanAnIntHolds) {
+  EXPECT_EQ(PlanOf(WithStream(kRoom, "seeds: 99999999..99999999\n")).runs.front().seed, 99999999);
+  for (const char* seeds : {"1..4294967298", "4294967297..4294967298", "1..100000000", "-1..2",
+                            "+1..2", " 1..2", "1..", "..2", "1...2", "2..1"}) {
+    EXPECT_THAT([&] { (void)ParseSeeds(seeds); },
+                ThrowsMessage<InputError>(HasSubstr("expected A..B")))
+        << seeds;
+  }
+}
+
 TEST(StudyPlanTest, TheShippedStudiesAreWhole) {
   int studies = 0;
   for (const auto& entry : std::filesystem::directory_iterator(DUET_SOURCE "/configs/studies")) {
@@ -147,6 +177,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "s.yaml:4: msckf.max_clone: unknown key; did you mean 'max_clones'?"},
         BadPlan{WithStream(kRoom, "settings: [{name: a, set: {msckf.max_clones: 1}}]\n"),
                 "expected an integer from 3 to 100"},
+        BadPlan{WithStream("{name: a, simulate: room_easy, set: {simulation.duration_s: 0}}", ""),
+                "s.yaml:3: streams.a: duration_s: expected above 0 s"},
         BadPlan{WithStream("{name: MH, dataset: nowhere/MH_01_easy}", "skip_missing: true\n"),
                 "none of the recordings is there"},
         BadPlan{WithStream("{name: MH, dataset: nowhere/MH_01_easy}", ""),
