@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "common/support/input_error.h"
 #include "common/support/text_file.h"
 #include "experiments/figures/figure_style.h"
+#include "experiments/study/record_version.h"
 #include "experiments/study/study_records.h"
 
 namespace duet {
@@ -94,6 +96,20 @@ bool BeforeInGrid(const FigureRun& a, const FigureRun& b) {
     return std::tie(where.stream, where.setting, where.perturbation, where.seed, where.estimator);
   };
   return key(a) < key(b);
+}
+
+// As the study's own tables: results of two versions are not drawn together.
+void RequireOneVersion(const std::vector<FigureRun>& runs) {
+  std::optional<RecordVersion> first;
+  for (const FigureRun& run : runs) {
+    if (!run.has_record()) continue;
+    const RecordVersion version = VersionOf(run.folder);
+    if (!first) first = version;
+    if (version == *first) continue;
+    throw InputError(run.folder, 0, "",
+                     "was made by " + version.Text() + ", others by " + first->Text() +
+                         "; results of two are not mixed");
+  }
 }
 
 // The cells of a study's grid, by its plan.csv where it has one (cells may share a record), else (a
@@ -193,6 +209,7 @@ std::vector<FigureRun> FindRuns(const std::vector<fs::path>& folders) {
     std::vector<FigureRun> found;
     if (fs::is_directory(folder / "runs")) {
       found = StudyRuns(folder);
+      RequireOneVersion(found);
       if (std::none_of(found.begin(), found.end(),
                        [](const FigureRun& run) { return run.has_record(); })) {
         found.clear();
@@ -280,7 +297,7 @@ std::string DrawnNote(const std::vector<FigureRun>& all, const std::vector<Figur
       note += std::string(coordinate.name) + " " + *of_drawn.begin();
       if (of_all.size() > 1) note += " (of " + count + ")";
     } else {
-      note += of_drawn.size() == of_all.size() ? "all " : std::to_string(of_drawn.size()) + " of ";
+      if (of_drawn.size() < of_all.size()) note += std::to_string(of_drawn.size()) + " of ";
       note += count + " " + coordinate.name + "s";
     }
   }

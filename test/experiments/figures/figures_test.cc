@@ -135,7 +135,7 @@ TEST(Figures, CostIsComparedOnStreamsThatDifferInFeaturesAndWithoutSurvivors) {
   const Figure figure = ComposeFigure("cost_against_accuracy", {.folders = {folder / "study"}});
   EXPECT_THAT(figure.notes, Contains("Settings: 1 default on few, 2 default on many."));
   EXPECT_THAT(figure.notes, Contains(HasSubstr("1 of 4 runs of msckf failed: left out")));
-  EXPECT_EQ(figure.notes.back(), "Drawn: 2 of 3 streams, all 2 seeds.");
+  EXPECT_EQ(figure.notes.back(), "Drawn: 2 of 3 streams, 2 seeds.");
   const auto front = std::find_if(figure.panels[0].series.begin(), figure.panels[0].series.end(),
                                   [](const Series& series) { return series.name == "front"; });
   ASSERT_NE(front, figure.panels[0].series.end());
@@ -158,7 +158,7 @@ TEST(Figures, OfAPlanTheFirstCellIsTheExampleAndCellsWithoutRecordHaveFailed) {
   EXPECT_EQ(errors.sources.size(), 2u);
   const Figure rmse = ComposeFigure("rmse_over_runs", input);
   EXPECT_THAT(rmse.notes, Contains("1 of 3 runs of msckf failed: gaps."));
-  EXPECT_THAT(rmse.notes.back(), "Drawn: stream room, all 3 seeds.");
+  EXPECT_THAT(rmse.notes.back(), "Drawn: stream room, 3 seeds.");
   EXPECT_THAT(rmse.sources.front(), HasSubstr("no record"));
   for (const char* name : {"nees_over_time", "relative_errors"}) {
     EXPECT_THAT(ComposeFigure(name, input).notes,
@@ -197,6 +197,40 @@ TEST(Figures, RmseIsTheStudysOwnWhereItHasBeenEvaluated) {
   EXPECT_NEAR(position[0], 0.0, 1e-9);  // a shift alone: aligned away
   EXPECT_EQ(position[1], 0.5);
   EXPECT_EQ(table.Column("msckf: orientation RMSE").at(1), 2.5);
+}
+
+// Two settings that one estimator does not tell apart share its record: each cell is drawn in its
+// own place, and once.
+TEST(Figures, CellsThatShareARecordAreDrawnOnceEach) {
+  const FiguresFolder folder;
+  for (const char* id : {"msckf", "window_a", "window_b"}) {
+    const std::string estimator = std::string(id).substr(0, 6) == "window" ? "window" : "msckf";
+    WriteTestRecord({.estimator = estimator, .setting = "a", .seed = 1},
+                    folder / ("study/runs/" + std::string(id)));
+    WriteTextFile(folder / ("study/runs/" + std::string(id) + "/evaluation.json"),
+                  "{\"metrics\": {\"ate.position_m\": 0.1}}\n");
+  }
+  WriteTextFile(folder / "study/plan.csv",
+                "#id,stream_id,stream,estimator,setting,perturbation,seed\n"
+                "msckf,s,room,msckf,a,none,1\nwindow_a,s,room,window,a,none,1\n"
+                "msckf,s,room,msckf,b,none,1\nwindow_b,s,room,window,b,none,1\n");
+  const FigureInput input{.folders = {folder / "study"}};
+  EXPECT_EQ(ComposeFigure("position_error", input).sources.size(), 2u);
+  MakeFigure("cost_against_accuracy", input, folder / "out");
+  const FigureTable table = ReadFigureTable(folder / "out/cost_against_accuracy.csv");
+  EXPECT_EQ(table.Column("msckf: position").size(), 2u);
+  EXPECT_EQ(table.Column("window: position").size(), 2u);
+}
+
+TEST(Figures, RecordsOfTwoVersionsAreNotDrawnTogether) {
+  const FiguresFolder folder;
+  WriteStudy(folder / "study");
+  const auto file = folder / "study/runs/msckf2/manifest.json";
+  std::string manifest = ReadTextFile(file);
+  manifest.replace(manifest.find("\"commit\": \"c\""), 13, "\"commit\": \"d\"");
+  WriteTextFile(file, manifest);
+  EXPECT_THAT(ErrorOf("rmse_over_runs", {.folders = {folder / "study"}}, folder / "out"),
+              HasSubstr("results of two are not mixed"));
 }
 
 TEST(Figures, BadInputIsOneLineThatSaysWhatToDo) {
