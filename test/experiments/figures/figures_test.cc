@@ -85,7 +85,7 @@ TEST(Figures, OfAStudyOneExampleIsShownOverTimeAndAllRunsInStatistics) {
   const Band band = MeanChiSquaredBand(3, 3, 0.95);
   EXPECT_NEAR(nees.Column("band of 3 runs: position NEES [-] from").front(), band.low, 1e-12);
   EXPECT_NEAR(nees.Column("band of 3 runs: position NEES [-] to").front(), band.high, 1e-12);
-  EXPECT_EQ(nees.comments.size(), 1u + 6 + 1);  // all six records
+  EXPECT_EQ(nees.comments.size(), 1u + 6 + 2);  // all six records, two notes
 }
 
 // A study whose baseline estimates nothing has its figure from the first setting that does; cells
