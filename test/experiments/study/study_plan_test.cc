@@ -128,6 +128,22 @@ TEST(StudyPlanTest, ThePlansYamlGivesTheSamePlanFromAnywhere) {
   EXPECT_EQ(stream.dataset, "/data/MH");
 }
 
+// Of a recording the seed decides nothing where nothing is drawn: it is in no id. What is known of
+// a recording is enough for a plan, wherever it has gone.
+TEST(StudyPlanTest, ARecordingsSeedCountsOnlyWhereSomethingIsDrawn) {
+  const StudyRecordings known = {
+      {"/gone/MH [0]", {.path = "/gone/MH", .fingerprint = "f", .frames = 40}}};
+  const auto plan = [&](const std::string& init, const std::string& seeds) {
+    const std::string yaml =
+        WithStream("{name: MH, dataset: /gone/MH, starts_s: [0, 5], init: " + init + "}",
+                   "skip_missing: true\nseeds: " + seeds + "\n");
+    return MakeStudyPlan(ParseStudyFile(yaml, "s.yaml", false), "", known);
+  };
+  EXPECT_EQ(plan("groundtruth", "1..2").runs.size(), 4U);
+  EXPECT_EQ(IdsOf(plan("groundtruth", "1..2")), IdsOf(plan("groundtruth", "3..9")));
+  EXPECT_NE(IdsOf(plan("drawn", "1..2")), IdsOf(plan("drawn", "3..4")));
+}
+
 TEST(StudyPlanTest, SeedsAreNoMoreThanAnIntHolds) {
   EXPECT_EQ(PlanOf(WithStream(kRoom, "seeds: 99999999..99999999\n")).runs.front().seed, 99999999);
   for (const char* seeds : {"1..4294967298", "4294967297..4294967298", "1..100000000", "-1..2",
