@@ -43,6 +43,14 @@ int RunFigure(const CommandLine& line) {
   for (const std::string& folder : line.All("runs")) input.folders.emplace_back(folder);
   input.folders.insert(input.folders.end(), words.begin() + 1, words.end());
   input.components = line.All("component");
+  if (!input.components.empty() && name != "calibration") {
+    throw InputError("", 0, "--component", "is of duet figure calibration alone");
+  }
+  for (const std::filesystem::path& folder : input.folders) {
+    if (!std::filesystem::exists(folder)) {
+      throw InputError(folder, 0, "", "does not exist; expected a folder with run records");
+    }
+  }
   const std::filesystem::path out = FLAGS_figure_out;
   const std::filesystem::path data = out / (name + ".csv");
   std::error_code ignored;

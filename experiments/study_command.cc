@@ -1,16 +1,10 @@
 #include <gflags/gflags.h>
 
-#include <algorithm>
-#include <cstdio>
-
 #include "common/support/input_error.h"
-#include "common/support/nearest_name.h"
 #include "experiments/commands.h"
 #include "experiments/common_flags.h"
-#include "experiments/figures/figures.h"
-#include "experiments/progress.h"
-#include "experiments/report/report.h"
 #include "experiments/study/study_runner.h"
+#include "experiments/study_pictures.h"
 
 DECLARE_int32(jobs);
 DEFINE_bool(quick, false, "With the keys below `quick` of the study's file: a first look.");
@@ -21,38 +15,6 @@ DEFINE_string(run, "", "Do this run of the plan alone.");
 
 namespace duet {
 namespace {
-
-namespace fs = std::filesystem;
-
-/// Of a study that names none; those that its records do not hold are left out.
-const std::vector<std::string>& DefaultFigures() {
-  static const std::vector<std::string> names = {"trajectory_top", "rmse_over_runs",
-                                                 "position_error", "nees_over_time"};
-  return names;
-}
-
-void CheckFigures(const StudyFile& study) {
-  std::vector<std::string> known;
-  for (const FigureName& figure : FigureNames()) known.push_back(figure.name);
-  for (const std::string& name : study.figures) {
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    throw InputError(study.file, 0, "figures",
-                     "no figure is called '" + name + "'" + DidYouMean(name, known));
-  }
-}
-
-/// Figures and report. One that the records do not hold is a warning: the study is done.
-void MakePictures(const StudyFolder& folder) {
-  const bool asked = !folder.study.figures.empty();
-  for (const std::string& name : asked ? folder.study.figures : DefaultFigures()) {
-    try {
-      (void)MakeFigure(name, {.folders = {folder.path}}, folder.path / "figures");
-    } catch (const InputError& error) {
-      if (asked) PrintWarning("figure " + name + ": " + error.what());
-    }
-  }
-  (void)WriteReport(folder.path, folder.path / "report.html");
-}
 
 int RunStudyCommand(const CommandLine& line) {
   if (line.operands().size() != 1) {

@@ -25,7 +25,8 @@ int RunTune(const CommandLine& line) {
   }
   if (FLAGS_jobs < 1) throw InputError("", 0, "--jobs", "expected at least 1");
   const std::filesystem::path file = line.operands().front();
-  const TuningFile tuning = ParseTuningFile(ReadTextFile(file), file, FLAGS_quick);
+  TuningFile tuning = ParseTuningFile(ReadTextFile(file), file, FLAGS_quick);
+  for (StudyStream& stream : tuning.report_streams) MakePathsAbsolute(file, FLAGS_data, &stream);
   const StudyChoices choices = {.file = file,
                                 .out = FLAGS_out,
                                 .data = FLAGS_data,
@@ -35,6 +36,15 @@ int RunTune(const CommandLine& line) {
                                 .print_summary = false,
                                 .command_line = line.text()};
   if (FLAGS_dry_run) return DryRunStudy(tuning.study, choices);
+  if (!std::filesystem::exists(choices.out / "plan.csv")) {
+    // One run first, so that an objective which no run has is not found out after the search.
+    StudyFile first = tuning.study;
+    first.settings.resize(1);
+    first.seeds.last = first.seeds.first;
+    const int status = RunStudy(first, choices);
+    if (status != kDone) return status;
+    (void)TuningTrials(ReadStudy(choices.out), tuning.objective);
+  }
   const int status = RunStudy(tuning.study, choices);
   if (status != kDone && status != kInternalError) return status;
   ReplaceTextFile(choices.out / "tuning.yaml", TuningYaml(tuning));
@@ -53,7 +63,8 @@ Command TuneCommand() {
       .description =
           "Tries the same number of settings of each estimator (the `budget` of the file, drawn at "
           "random from the values that it lists; configs/tuning/ has one), on streams and seeds "
-          "apart from those of the report. The whole search stays as a study's folder, with "
+          "apart from those of the report (report_seeds and, where the search runs on recordings, "
+          "report_streams). The whole search stays as a study's folder, with "
           "search.csv; report.yaml is the study that shows what tuning bought on the report's "
           "seeds. docs/studies.md.",
       .example = "duet tune configs/tuning/room.yaml --jobs 2 --out tuned",

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "common/dataset/csv_reader.h"
 #include "common/support/input_error.h"
@@ -131,11 +132,32 @@ std::map<std::string, double> ToldCalibration(const FigureRun& run) {
   return told;
 }
 
+// The runs from the first on that estimates what is asked for (anything, where nothing is), so that
+// a study whose baseline estimates nothing has its figure; all of them where none does.
+std::vector<FigureRun> FromFirstEstimating(const std::vector<FigureRun>& all,
+                                           const std::vector<std::string>& asked) {
+  std::set<std::string> seen;
+  for (auto run = all.begin(); run != all.end(); ++run) {
+    const StudyRun& where = run->where;
+    // Seeds of a setting estimate the same.
+    const std::string group =
+        where.stream + "\n" + where.estimator + "\n" + where.setting + "\n" + where.perturbation;
+    if (!run->has_record() || !seen.insert(group).second) continue;
+    const std::vector<std::string> estimated =
+        EstimatedComponents(ReadRecordTable(run->folder / "states.csv"));
+    const bool has_all = std::all_of(asked.begin(), asked.end(), [&](const std::string& name) {
+      return std::find(estimated.begin(), estimated.end(), name) != estimated.end();
+    });
+    if (!estimated.empty() && has_all) return {run, all.end()};
+  }
+  return asked.empty() ? all : FromFirstEstimating(all, {});
+}
+
 }  // namespace
 
 Figure CalibrationFigure(const FigureInput& input) {
   const std::vector<FigureRun> all = FindRuns(input.folders);
-  const std::vector<FigureRun> runs = ExampleRuns(all);
+  const std::vector<FigureRun> runs = ExampleRuns(FromFirstEstimating(all, input.components));
   std::vector<RecordTable> states;
   for (const FigureRun& run : runs) states.push_back(ReadRecordTable(run.folder / "states.csv"));
   const std::vector<std::string> components = ChosenComponents(
@@ -199,6 +221,8 @@ Figure CalibrationFigure(const FigureInput& input) {
   if (!truth_known) {
     figure.notes.push_back("The records hold no true calibration (calibration_truth.csv).");
   }
+  AddNote(FailedNote(runs, "drawn as far as it went"), &figure);
+  AddNote(DrawnNote(all, runs), &figure);
   return figure;
 }
 

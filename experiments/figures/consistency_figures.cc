@@ -71,22 +71,19 @@ MeanNees MeanOverRuns(const std::vector<RunOnInput>& runs, NeesBlock block) {
 }  // namespace
 
 Figure NeesOverTimeFigure(const FigureInput& input) {
-  const std::vector<FigureRun> runs = RunsOfFirstGroup(FindRuns(input.folders));
+  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const std::vector<FigureRun> runs = RunsOfFirstGroup(all);
   Figure figure;
   figure.sources = DescribeSources(runs);
   const std::vector<std::string> estimators = EstimatorsOf(runs);
   std::map<std::string, std::vector<RunOnInput>> nees;
   bool shared_input = false;
-  int missing = 0;
   for (const FigureRun& run : runs) {
-    if (run.where.failed) {
-      ++missing;
-    } else {
-      // Where the input is not known each run has its own.
-      const std::string ran_on =
-          run.where.stream_id.empty() ? run.folder.string() : run.where.stream_id;
-      nees[run.where.estimator].push_back({ran_on, NeesOf(run)});
-    }
+    if (run.where.failed) continue;
+    // Where the input is not known each run has its own.
+    const std::string ran_on =
+        run.where.stream_id.empty() ? run.folder.string() : run.where.stream_id;
+    nees[run.where.estimator].push_back({ran_on, NeesOf(run)});
   }
 
   constexpr std::array<NeesBlock, 3> kBlocks = {NeesBlock::kPose, NeesBlock::kOrientation,
@@ -140,7 +137,8 @@ Figure NeesOverTimeFigure(const FigureInput& input) {
     figure.notes.push_back(
         "Runs on one input share its noise: the band is of as many runs as there are inputs.");
   }
-  if (missing > 0) figure.notes.push_back(CountOfRuns(missing) + " failed: left out.");
+  AddNote(FailedNote(runs, "left out"), &figure);
+  AddNote(DrawnNote(all, runs), &figure);
   return figure;
 }
 

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
+#include "common/config/yaml_map.h"
 #include "common/support/input_error.h"
 #include "common/support/numeric_text.h"
 #include "common/support/text_file.h"
@@ -10,6 +12,7 @@
 #include "experiments/figures/figure_runs.h"
 #include "experiments/figures/figure_style.h"
 #include "experiments/figures/run_errors.h"
+#include "experiments/study/study_file.h"
 #include "experiments/timing_log.h"
 
 namespace duet {
@@ -26,21 +29,31 @@ Timing TimingOf(const FigureRun& run) {
 
 double MedianOf(std::vector<double> values) { return Summarize(std::move(values)).median; }
 
-/// One setting of one estimator: medians over its seeds.
+/// One setting of one estimator on one stream: medians over its seeds.
 struct CostPoint {
-  std::string setting;
+  std::string setting;  ///< with the stream where there are several
+  std::string stream;
+  bool has_failed = false;  ///< a run of it: its medians are of those that did not
   double frame_ms = 0.0;
   double position_m = 0.0;
 };
 
 std::vector<CostPoint> CostPoints(const std::vector<FigureRun>& runs,
                                   const std::string& estimator) {
-  std::vector<std::string> order;
-  std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> of_setting;
+  struct Values {
+    std::vector<double> frame_ms, position_m;
+    bool has_failed = false;
+  };
+  using Key = std::pair<std::string, std::string>;
+  std::vector<Key> order;
+  std::map<Key, Values> of_setting;
   for (const FigureRun& run : runs) {
-    if (run.where.estimator != estimator || run.where.failed) continue;
-    if (!of_setting.contains(run.where.setting)) order.push_back(run.where.setting);
-    auto& [frame_ms, position_m] = of_setting[run.where.setting];
+    if (run.where.estimator != estimator) continue;
+    const Key key = {run.where.stream, run.where.setting};
+    if (!of_setting.contains(key)) order.push_back(key);
+    auto& [frame_ms, position_m, has_failed] = of_setting[key];
+    has_failed = has_failed || run.where.failed;
+    if (run.where.failed) continue;
     for (const auto& [column, values] : TimingOf(run)) {
       if (column == "estimator") frame_ms.push_back(MedianOf(values));
     }
@@ -49,10 +62,17 @@ std::vector<CostPoint> CostPoints(const std::vector<FigureRun>& runs,
     }
   }
   std::vector<CostPoint> points;
-  for (const std::string& setting : order) {
-    auto& [frame_ms, position_m] = of_setting[setting];
+  const bool one_stream = std::all_of(runs.begin(), runs.end(), [&](const FigureRun& run) {
+    return run.where.stream == runs.front().where.stream;
+  });
+  for (const auto& [stream, setting] : order) {
+    auto& [frame_ms, position_m, has_failed] = of_setting[{stream, setting}];
     if (frame_ms.empty() || position_m.empty()) continue;
-    points.push_back({setting, MedianOf(frame_ms), MedianOf(position_m)});
+    points.push_back({.setting = one_stream ? setting : setting + " on " + stream,
+                      .stream = stream,
+                      .has_failed = has_failed,
+                      .frame_ms = MedianOf(frame_ms),
+                      .position_m = MedianOf(position_m)});
   }
   return points;
 }
@@ -114,10 +134,39 @@ class NumberPlacer {
   std::vector<std::pair<double, double>> taken_;
 };
 
-// No other point costs less and is more accurate.
+// The streams that may stand in one picture with the first: the same simulation but for how many
+// features it shows.
+std::set<std::string> StreamsWithFirst(const FigureRun& first) {
+  std::set<std::string> names = {first.where.stream};
+  const std::filesystem::path file = first.study / "study.yaml";
+  if (first.study.empty() || !std::filesystem::exists(file)) return names;
+  const auto settings_of = [](const StudyStream& stream) {
+    std::map<std::string, std::string> settings = {
+        {"simulate", stream.simulate},
+        {"seed", stream.simulation_seed ? std::to_string(*stream.simulation_seed) : ""},
+        {"jitter", FormatNumber(stream.jitter_px)},
+        {"init", stream.init}};
+    for (const StudyKey& key : stream.set) {
+      if (key.key != "simulation.max_tracks") settings[key.key] = Describe(key.value);
+    }
+    return settings;
+  };
+  const std::vector<StudyStream> streams = ReadStudyFile(file, /*quick=*/false).streams;
+  for (const StudyStream& stream : streams) {
+    if (stream.name != first.where.stream || !stream.simulated()) continue;
+    for (const StudyStream& other : streams) {
+      if (settings_of(other) == settings_of(stream)) names.insert(other.name);
+    }
+  }
+  return names;
+}
+
+// No other point costs less and is more accurate. Medians of survivors beat nobody.
 bool OnFront(const CostPoint& point, const std::vector<CostPoint>& all) {
+  if (point.has_failed) return false;
   return std::none_of(all.begin(), all.end(), [&point](const CostPoint& other) {
-    return other.frame_ms <= point.frame_ms && other.position_m <= point.position_m &&
+    return !other.has_failed && other.frame_ms <= point.frame_ms &&
+           other.position_m <= point.position_m &&
            (other.frame_ms < point.frame_ms || other.position_m < point.position_m);
   });
 }
@@ -130,9 +179,10 @@ Axis LogarithmicAxisAround(std::string label, double low, double high) {
 
 Figure CostAgainstAccuracyFigure(const FigureInput& input) {
   const std::vector<FigureRun> all = FindRuns(input.folders);
+  const std::set<std::string> streams = StreamsWithFirst(all.front());
   std::vector<FigureRun> runs;
   for (const FigureRun& run : all) {
-    if (run.where.stream == all.front().where.stream &&
+    if (streams.contains(run.where.stream) &&
         run.where.perturbation == all.front().where.perturbation) {
       runs.push_back(run);
     }
@@ -170,12 +220,23 @@ Figure CostAgainstAccuracyFigure(const FigureInput& input) {
     std::vector<CostPoint> sorted = points[n];
     std::sort(sorted.begin(), sorted.end(),
               [](const CostPoint& a, const CostPoint& b) { return a.frame_ms < b.frame_ms; });
+    // A line joins the settings on one stream.
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [](const CostPoint& a, const CostPoint& b) { return a.stream < b.stream; });
+    std::vector<double> line_x, line_y;
     std::vector<double> x, y;
     for (std::size_t i = 1; i < sorted.size(); ++i) {
+      if (sorted[i].stream != sorted[i - 1].stream) continue;
       placer.AddLine(sorted[i - 1].frame_ms, sorted[i - 1].position_m, sorted[i].frame_ms,
                      sorted[i].position_m);
     }
     for (const CostPoint& point : sorted) {
+      if (&point != &sorted.front() && point.stream != (&point - 1)->stream) {
+        line_x.push_back(std::nan(""));
+        line_y.push_back(std::nan(""));
+      }
+      line_x.push_back(point.frame_ms);
+      line_y.push_back(point.position_m);
       x.push_back(point.frame_ms);
       y.push_back(point.position_m);
       if (std::find(settings.begin(), settings.end(), point.setting) == settings.end()) {
@@ -188,7 +249,7 @@ Figure CostAgainstAccuracyFigure(const FigureInput& input) {
     }
     Look look = LookOfEstimator(estimators[n], n);
     look.width_pt = 0.6;
-    panel.series.push_back(LineSeries(estimators[n] + " line", "", look, x, y));
+    panel.series.push_back(LineSeries(estimators[n] + " line", "", look, line_x, line_y));
     look.width_pt = 1.2;
     panel.series.push_back(PointSeries(estimators[n], estimators[n], look, x, y));
   }
@@ -212,11 +273,14 @@ Figure CostAgainstAccuracyFigure(const FigureInput& input) {
   if (!numbers.texts.empty()) panel.series.push_back(numbers);
   figure.panels = {panel};
   figure.notes.push_back("Medians over the seeds; front end apart.");
+  AddNote(FailedNote(runs, "left out of the medians, and such points are not compared"), &figure);
+  AddNote(DrawnNote(all, runs), &figure);
   return figure;
 }
 
 Figure TimeByStageFigure(const FigureInput& input) {
-  const std::vector<FigureRun> runs = RunsOfFirstGroup(FindRuns(input.folders));
+  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const std::vector<FigureRun> runs = RunsOfFirstGroup(all);
   const std::vector<std::string> estimators = EstimatorsOf(runs);
   constexpr const char* kPrefix = "estimator.";
   // Frames of all runs of an estimator together; a frame without a stage spent none in it.
@@ -329,6 +393,8 @@ Figure TimeByStageFigure(const FigureInput& input) {
             (estimator == estimators.back() ? "." : ",");
   }
   figure.notes.push_back(note + " Front end apart.");
+  AddNote(FailedNote(runs, "its frames as far as it went"), &figure);
+  AddNote(DrawnNote(all, runs), &figure);
   return figure;
 }
 

@@ -64,11 +64,8 @@ Figure ErrorFigure(const FigureInput& input, bool position) {
                            (by_first ? "its first position and its yaw" : "position and yaw") +
                            " first: σ counts from the estimator's own start.");
   }
-  if (runs.size() < all.size() && !runs.front().study.empty()) {
-    figure.notes.push_back("One example of " + std::to_string(all.size()) +
-                           " runs: " + runs.front().where.stream + ", seed " +
-                           std::to_string(runs.front().where.seed) + ".");
-  }
+  AddNote(FailedNote(ExampleCells(all), "drawn as far as it went"), &figure);
+  AddNote(DrawnNote(all, runs), &figure);
   return figure;
 }
 
@@ -78,7 +75,8 @@ Figure PositionErrorFigure(const FigureInput& input) { return ErrorFigure(input,
 Figure OrientationErrorFigure(const FigureInput& input) { return ErrorFigure(input, false); }
 
 Figure RmseOverRunsFigure(const FigureInput& input) {
-  const std::vector<FigureRun> runs = RunsOfFirstGroup(FindRuns(input.folders));
+  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const std::vector<FigureRun> runs = RunsOfFirstGroup(all);
   Figure figure;
   figure.sources = DescribeSources(runs);
   const bool plain = runs.front().study.empty();
@@ -87,18 +85,13 @@ Figure RmseOverRunsFigure(const FigureInput& input) {
                  .share_x = true};
   Panel orientation{.x = position.x, .y = {.label = "orientation RMSE [deg]", .low = 0.0}};
   const std::vector<std::string> estimators = EstimatorsOf(runs);
-  int failed = 0;
   for (std::size_t n = 0; n < estimators.size(); ++n) {
     std::vector<double> at, position_m, orientation_deg;
     for (const FigureRun& run : runs) {
       if (run.where.estimator != estimators[n]) continue;
       at.push_back(plain ? static_cast<double>(at.size() + 1) : run.where.seed);
       RunRmse rmse;
-      if (run.where.failed) {
-        ++failed;
-      } else {
-        rmse = RmseOf(run);
-      }
+      if (!run.where.failed) rmse = RmseOf(run);
       position_m.push_back(rmse.position_m);
       orientation_deg.push_back(rmse.orientation_deg);
     }
@@ -131,7 +124,8 @@ Figure RmseOverRunsFigure(const FigureInput& input) {
   }
   figure.panels = {position, orientation};
   figure.notes.push_back("Position after position and yaw, orientation after a yaw of its own.");
-  if (failed > 0) figure.notes.push_back(CountOfRuns(failed) + " failed: gaps.");
+  AddNote(FailedNote(runs, "gaps"), &figure);
+  AddNote(DrawnNote(all, runs), &figure);
   return figure;
 }
 

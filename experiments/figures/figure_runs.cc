@@ -1,7 +1,9 @@
 #include "experiments/figures/figure_runs.h"
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -9,6 +11,7 @@
 #include "common/support/input_error.h"
 #include "common/support/text_file.h"
 #include "experiments/figures/figure_style.h"
+#include "experiments/study/record_version.h"
 #include "experiments/study/study_records.h"
 
 namespace duet {
@@ -93,6 +96,20 @@ bool BeforeInGrid(const FigureRun& a, const FigureRun& b) {
     return std::tie(where.stream, where.setting, where.perturbation, where.seed, where.estimator);
   };
   return key(a) < key(b);
+}
+
+// As the study's own tables: results of two versions are not drawn together.
+void RequireOneVersion(const std::vector<FigureRun>& runs) {
+  std::optional<RecordVersion> first;
+  for (const FigureRun& run : runs) {
+    if (!run.has_record()) continue;
+    const RecordVersion version = VersionOf(run.folder);
+    if (!first) first = version;
+    if (version == *first) continue;
+    throw InputError(run.folder, 0, "",
+                     "was made by " + version.Text() + ", others by " + first->Text() +
+                         "; results of two are not mixed");
+  }
 }
 
 // The cells of a study's grid, by its plan.csv where it has one (cells may share a record), else (a
@@ -192,6 +209,7 @@ std::vector<FigureRun> FindRuns(const std::vector<fs::path>& folders) {
     std::vector<FigureRun> found;
     if (fs::is_directory(folder / "runs")) {
       found = StudyRuns(folder);
+      RequireOneVersion(found);
       if (std::none_of(found.begin(), found.end(),
                        [](const FigureRun& run) { return run.has_record(); })) {
         found.clear();
@@ -215,19 +233,24 @@ std::vector<FigureRun> FindRuns(const std::vector<fs::path>& folders) {
   return runs;
 }
 
-std::vector<FigureRun> ExampleRuns(const std::vector<FigureRun>& runs) {
-  std::vector<FigureRun> examples;
+std::vector<FigureRun> ExampleCells(const std::vector<FigureRun>& runs) {
+  std::vector<FigureRun> cells;
   const FigureRun& first = FirstWithRecord(runs);
   for (const FigureRun& run : runs) {
-    if (!run.has_record()) continue;
     const bool same = run.study.empty() ? run.where.stream == first.where.stream
                                         : run.where.stream == first.where.stream &&
                                               run.where.setting == first.where.setting &&
                                               run.where.perturbation == first.where.perturbation &&
                                               run.where.seed == first.where.seed;
-    if (same && run.study.empty() == first.study.empty() && examples.size() < kMostExamples) {
-      examples.push_back(run);
-    }
+    if (same && run.study.empty() == first.study.empty()) cells.push_back(run);
+  }
+  return cells;
+}
+
+std::vector<FigureRun> ExampleRuns(const std::vector<FigureRun>& runs) {
+  std::vector<FigureRun> examples;
+  for (const FigureRun& run : ExampleCells(runs)) {
+    if (run.has_record() && examples.size() < kMostExamples) examples.push_back(run);
   }
   LabelRuns(&examples);
   return examples;
@@ -248,6 +271,58 @@ std::vector<FigureRun> RunsOfFirstGroup(const std::vector<FigureRun>& runs) {
   }
   LabelRuns(&group);
   return group;
+}
+
+std::string DrawnNote(const std::vector<FigureRun>& all, const std::vector<FigureRun>& drawn) {
+  if (drawn.empty() || drawn.front().study.empty()) return "";
+  struct Coordinate {
+    const char* name;
+    std::string (*value)(const StudyRun& where);
+    const char* silent;  // goes without saying where there is no other
+  };
+  static constexpr std::array<Coordinate, 4> kCoordinates = {
+      Coordinate{"stream", [](const StudyRun& where) { return where.stream; }, ""},
+      Coordinate{"setting", [](const StudyRun& where) { return where.setting; }, "default"},
+      Coordinate{"perturbation", [](const StudyRun& where) { return where.perturbation; }, "none"},
+      Coordinate{"seed", [](const StudyRun& where) { return std::to_string(where.seed); }, ""}};
+  std::string note;
+  for (const Coordinate& coordinate : kCoordinates) {
+    std::set<std::string> of_all, of_drawn;
+    for (const FigureRun& run : all) of_all.insert(coordinate.value(run.where));
+    for (const FigureRun& run : drawn) of_drawn.insert(coordinate.value(run.where));
+    const std::string count = std::to_string(of_all.size());
+    if (of_all.size() == 1 && *of_all.begin() == coordinate.silent) continue;
+    note += note.empty() ? "Drawn: " : ", ";
+    if (of_drawn.size() == 1) {
+      note += std::string(coordinate.name) + " " + *of_drawn.begin();
+      if (of_all.size() > 1) note += " (of " + count + ")";
+    } else {
+      if (of_drawn.size() < of_all.size()) note += std::to_string(of_drawn.size()) + " of ";
+      note += count + " " + coordinate.name + "s";
+    }
+  }
+  return note + ".";
+}
+
+std::string FailedNote(const std::vector<FigureRun>& runs, const std::string& so) {
+  std::string note;
+  for (const std::string& estimator : EstimatorsOf(runs)) {
+    int all = 0;
+    int failed = 0;
+    for (const FigureRun& run : runs) {
+      if (run.where.estimator != estimator) continue;
+      ++all;
+      failed += run.where.failed ? 1 : 0;
+    }
+    if (failed == 0) continue;
+    note += (note.empty() ? "" : ", ") + std::to_string(failed) + " of " + CountOfRuns(all) +
+            " of " + estimator;
+  }
+  return note.empty() ? "" : note + " failed: " + so + ".";
+}
+
+void AddNote(std::string note, Figure* figure) {
+  if (!note.empty()) figure->notes.push_back(std::move(note));
 }
 
 std::vector<std::string> EstimatorsOf(const std::vector<FigureRun>& runs) {

@@ -36,6 +36,20 @@ struct FigureRun {
 /// whatever their seed; of plain records the first of each estimator on each recording.
 [[nodiscard]] std::vector<FigureRun> RunsOfFirstGroup(const std::vector<FigureRun>& runs);
 
+/// For a figure's notes, of a study: which of its streams, settings, perturbations and seeds are
+/// drawn, and of how many: "Drawn: stream room (of 3), seed 1 (of 8)." Empty of plain records.
+[[nodiscard]] std::string DrawnNote(const std::vector<FigureRun>& all,
+                                    const std::vector<FigureRun>& drawn);
+
+/// For a figure's notes: "5 of 8 runs of window failed: left out." Empty where none of `runs` did.
+[[nodiscard]] std::string FailedNote(const std::vector<FigureRun>& runs, const std::string& so);
+
+/// The cells where ExampleRuns are taken from, those without a record too.
+[[nodiscard]] std::vector<FigureRun> ExampleCells(const std::vector<FigureRun>& runs);
+
+/// Adds a note that is not empty.
+void AddNote(std::string note, Figure* figure);
+
 /// Estimators in the order of their first runs.
 [[nodiscard]] std::vector<std::string> EstimatorsOf(const std::vector<FigureRun>& runs);
 

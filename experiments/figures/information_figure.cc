@@ -92,7 +92,8 @@ Figure InformationSpectrumFigure(const FigureInput& input) {
         "Eigenvalues of the calibration's information matrix at the end, all else eliminated, in "
         "units of the priors: 1 is nothing learnt."};
   } else {
-    const std::vector<FigureRun> runs = ExampleRuns(FindRuns(input.folders));
+    const std::vector<FigureRun> all = FindRuns(input.folders);
+    const std::vector<FigureRun> runs = ExampleRuns(all);
     const std::vector<Look> looks = LooksOf(runs);
     for (std::size_t n = 0; n < runs.size(); ++n) AddRun(runs[n], looks[n], &panel);
     figure.sources = DescribeSources(runs);
@@ -100,6 +101,8 @@ Figure InformationSpectrumFigure(const FigureInput& input) {
         "Eigenvalues of the information matrix of θ, p, v, b_g, b_a at the end, in units of the "
         "start's standard deviations; under 1: less is known than at the start (yaw and position "
         "are unobservable)."};
+    AddNote(FailedNote(ExampleCells(all), "drawn as far as it went"), &figure);
+    AddNote(DrawnNote(all, runs), &figure);
   }
   double last = 0.0;
   for (const Series& series : panel.series) {

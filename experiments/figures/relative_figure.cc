@@ -54,7 +54,8 @@ std::string LengthText(double length_m) {
 }  // namespace
 
 Figure RelativeErrorsFigure(const FigureInput& input) {
-  const std::vector<FigureRun> runs = RunsOfFirstGroup(FindRuns(input.folders));
+  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const std::vector<FigureRun> runs = RunsOfFirstGroup(all);
   const std::vector<std::string> estimators = EstimatorsOf(runs);
   std::map<double, std::map<std::string, LengthErrors>> errors;
   std::size_t groups = 0;
@@ -125,9 +126,8 @@ Figure RelativeErrorsFigure(const FigureInput& input) {
   }
   figure.panels = {translation, rotation};
   figure.notes.push_back(single ? "Boxes over segments: p25 to p75, whiskers p5 to p95. Segments:"
-                                : "Boxes over " + std::to_string(groups) +
-                                      " streams of each one's median over its segments: p25 to "
-                                      "p75, whiskers p5 to p95.");
+                                : "Boxes over the runs of each one's median over its segments: "
+                                  "p25 to p75, whiskers p5 to p95.");
   if (single) {
     std::string& note = figure.notes.back();
     for (const auto& [length, of_estimators] : errors) {
@@ -135,6 +135,8 @@ Figure RelativeErrorsFigure(const FigureInput& input) {
               " of " + LengthText(length) + (length == errors.rbegin()->first ? "." : ",");
     }
   }
+  AddNote(FailedNote(runs, "left out"), &figure);
+  AddNote(DrawnNote(all, runs), &figure);
   return figure;
 }
 

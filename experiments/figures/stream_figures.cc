@@ -23,6 +23,7 @@ struct Stream {
   Recording recording;
   std::string sha256;
   std::string source;
+  std::string drawn;  ///< DrawnNote of a study
 };
 
 // Of a recording's folder, or of what the first run ran on.
@@ -36,7 +37,9 @@ Stream StreamOf(const FigureInput& input) {
     stream.recording = LoadRecording(input.folders.front(), options);
     stream.source = input.folders.front().string();
   } else {
-    const std::vector<FigureRun> runs = ExampleRuns(FindRuns(input.folders));
+    const std::vector<FigureRun> all = FindRuns(input.folders);
+    const std::vector<FigureRun> runs = ExampleRuns(all);
+    stream.drawn = DrawnNote(all, {runs.front()});
     stream.recording = RecordingOf(runs.front());
     stream.source = DescribeSource(runs.front());
   }
@@ -79,6 +82,7 @@ Figure HistogramFigure(const Stream& stream, const std::vector<double>& values, 
   std::snprintf(text, sizeof(text), "%zu tracks; %s median %.3g, p95 %.3g, largest %.3g.",
                 values.size(), what.c_str(), summary.median, summary.p95, summary.max);
   figure.notes = {text, "Stream " + stream.sha256.substr(0, 32) + "."};
+  AddNote(stream.drawn, &figure);
   return figure;
 }
 

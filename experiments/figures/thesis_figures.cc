@@ -20,13 +20,25 @@ namespace {
 constexpr double kRestWindowSeconds = 0.5;
 constexpr double kRestGyroSigma = 0.03;          // rad/s
 constexpr double kRestAccelerometerSigma = 0.5;  // m/s^2
+// And what it shows on the mean: no turn beyond a gyroscope's bias, and gravity with the
+// accelerometer's.
+constexpr double kRestRate = 0.15;            // rad/s
+constexpr double kRestAccelerationOff = 1.0;  // m/s^2
+constexpr double kGravity = 9.81;             // m/s^2
 constexpr std::size_t kFewestAtRest = 100;
+
+Eigen::Vector3d MeanOf(const std::vector<ImuSample>& imu, std::size_t begin, std::size_t end,
+                       Eigen::Vector3d ImuSample::*member) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (std::size_t i = begin; i < end; ++i) {
+    mean += imu[i].*member / static_cast<double>(end - begin);
+  }
+  return mean;
+}
 
 double SigmaAlong(const std::vector<ImuSample>& imu, std::size_t begin, std::size_t end,
                   Eigen::Vector3d ImuSample::*member) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (std::size_t i = begin; i < end; ++i)
-    mean += imu[i].*member / static_cast<double>(end - begin);
+  const Eigen::Vector3d mean = MeanOf(imu, begin, end, member);
   Eigen::Vector3d squares = Eigen::Vector3d::Zero();
   for (std::size_t i = begin; i < end; ++i) squares += (imu[i].*member - mean).cwiseAbs2();
   return std::sqrt(squares.maxCoeff() / static_cast<double>(end - begin));
@@ -42,7 +54,10 @@ std::pair<std::size_t, std::size_t> LongestRest(const std::vector<ImuSample>& im
   std::size_t begin = 0;
   for (std::size_t i = 0; i + window <= imu.size(); i += window) {
     const bool rest = SigmaAlong(imu, i, i + window, &ImuSample::omega_m) < kRestGyroSigma &&
-                      SigmaAlong(imu, i, i + window, &ImuSample::a_m) < kRestAccelerometerSigma;
+                      SigmaAlong(imu, i, i + window, &ImuSample::a_m) < kRestAccelerometerSigma &&
+                      MeanOf(imu, i, i + window, &ImuSample::omega_m).norm() < kRestRate &&
+                      std::abs(MeanOf(imu, i, i + window, &ImuSample::a_m).norm() - kGravity) <
+                          kRestAccelerationOff;
     if (!rest) {
       begin = i + window;
     } else if (i + window - begin > longest.second - longest.first) {
@@ -91,7 +106,8 @@ Figure Thesis32Figure(const FigureInput& input) {
   const auto [begin, end] = LongestRest(recording.imu);
   if (end - begin < kFewestAtRest) {
     throw InputError(recording.folder.string() + " does not rest: its longest rest has " +
-                     std::to_string(end - begin) + " samples; expected " +
+                     std::to_string(end - begin) +
+                     " samples (steady, hardly turning, gravity alone); expected " +
                      std::to_string(kFewestAtRest) + " or more");
   }
   Figure figure;
@@ -222,8 +238,11 @@ Figure Thesis54Figure(const FigureInput& input) {
   int rows = 480;
   Figure figure;
   figure.sources = {"an example's times"};
+  std::string drawn;
   if (!input.folders.empty()) {  // of a run: its last estimates, where it has some, else as told
-    const std::vector<FigureRun> runs = ExampleRuns(FindRuns(input.folders));
+    const std::vector<FigureRun> all = FindRuns(input.folders);
+    const std::vector<FigureRun> runs = ExampleRuns(all);
+    drawn = DrawnNote(all, {runs.front()});
     const Recording recording = RecordingOf(runs.front());
     const RecordTable states = ReadRecordTable(runs.front().folder / "states.csv");
     const std::vector<Timestamp> stamps = recording.FrameStamps();
@@ -275,11 +294,13 @@ Figure Thesis54Figure(const FigureInput& input) {
   std::snprintf(text, sizeof(text), "t_d = %.4g ms, t_r = %.4g ms, N = %d.", 1e3 * t_d_s,
                 1e3 * t_r_s, rows);
   figure.notes = {text};
+  AddNote(drawn, &figure);
   return figure;
 }
 
 Figure Thesis81Figure(const FigureInput& input) {
-  const std::vector<FigureRun> runs = ExampleRuns(FindRuns(input.folders));
+  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const std::vector<FigureRun> runs = ExampleRuns(all);
   Figure figure;
   figure.sources = DescribeSources(runs);
   const std::vector<Look> looks = LooksOf(runs);
@@ -317,6 +338,8 @@ Figure Thesis81Figure(const FigureInput& input) {
   figure.panels = {position, orientation};
   figure.notes.push_back("After SE(3) alignment, as in table 8.1, on " + runs.front().where.stream +
                          ".");
+  AddNote(FailedNote(ExampleCells(all), "drawn as far as it went"), &figure);
+  AddNote(DrawnNote(all, runs), &figure);
   return figure;
 }
 

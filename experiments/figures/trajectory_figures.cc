@@ -65,7 +65,8 @@ Look LookIn(const View& view, const FigureRun& run, Look look) {
 }
 
 Figure TrajectoryFigure(const FigureInput& input, const View& view) {
-  const std::vector<FigureRun> runs = ExampleRuns(FindRuns(input.folders));
+  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const std::vector<FigureRun> runs = ExampleRuns(all);
   Figure figure;
   figure.sources = DescribeSources(runs);
   Panel panel{.x = {.label = view.across_label}, .y = {.label = view.up_label}};
@@ -121,6 +122,8 @@ Figure TrajectoryFigure(const FigureInput& input, const View& view) {
   figure.panels.push_back(std::move(panel));
   figure.notes.push_back(std::string("Each estimate laid onto the truth by ") +
                          (any_by_first ? "its first position and its yaw" : view.alignment) + ".");
+  AddNote(FailedNote(ExampleCells(all), "drawn as far as it went"), &figure);
+  AddNote(DrawnNote(all, runs), &figure);
   return figure;
 }
 

@@ -71,7 +71,8 @@ bool AddAutocorrelation(const std::vector<double>& z, std::vector<double>* sums)
 }  // namespace
 
 Figure NormalizedErrorsFigure(const FigureInput& input) {
-  const std::vector<FigureRun> runs = RunsOfFirstGroup(FindRuns(input.folders));
+  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const std::vector<FigureRun> runs = RunsOfFirstGroup(all);
   const std::vector<std::string> estimators = EstimatorsOf(runs);
   const auto errors = OfEstimators(runs);
   Figure figure;
@@ -122,11 +123,14 @@ Figure NormalizedErrorsFigure(const FigureInput& input) {
   figure.notes = {
       "Errors of the state (records hold no innovations), after the first 2 s, all runs "
       "together; neighbouring instants depend on one another."};
+  AddNote(FailedNote(runs, "left out"), &figure);
+  AddNote(DrawnNote(all, runs), &figure);
   return figure;
 }
 
 Figure WhitenessFigure(const FigureInput& input) {
-  const std::vector<FigureRun> runs = RunsOfFirstGroup(FindRuns(input.folders));
+  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const std::vector<FigureRun> runs = RunsOfFirstGroup(all);
   const std::vector<std::string> estimators = EstimatorsOf(runs);
   const auto errors = OfEstimators(runs);
   Figure figure;
@@ -170,6 +174,8 @@ Figure WhitenessFigure(const FigureInput& input) {
       "Of the state's errors over their standard deviations (records hold no "
       "innovations, which would be white): how far apart instants are independent. Mean "
       "over axes and runs, after the first 2 s."};
+  AddNote(FailedNote(runs, "left out"), &figure);
+  AddNote(DrawnNote(all, runs), &figure);
   return figure;
 }
 

@@ -359,7 +359,10 @@ StudyFile StudyOfYaml(YamlNode root, const fs::path& path, bool quick) {
     if (FindMetric(metric)) continue;
     map.Fail("metrics", "no metric is called '" + metric + "'" + DidYouMean(metric, MetricKeys()));
   }
-  if (map.Find("figures") != nullptr) study.figures = map.Texts("figures", {});
+  if (const YamlNode* figures = map.Find("figures")) {
+    const bool none = figures->kind == YamlNode::Kind::kSequence && figures->items.empty();
+    study.figures = none ? std::vector<std::string>() : map.Texts("figures", {});
+  }
   study.measure_time = map.BoolOr("measure_time", false);
   study.skip_missing = map.BoolOr("skip_missing", false);
   if (map.Find("published") != nullptr) {

@@ -65,7 +65,7 @@ struct StudyFile {
   std::string baseline;  ///< a setting or a perturbation
   StudyCompare compare = StudyCompare::kEstimators;
   std::vector<std::string> metrics;
-  std::vector<std::string> figures;
+  std::optional<std::vector<std::string>> figures;  ///< empty: none; absent: a choice
   bool measure_time = false;
   /// Recordings that are not there are left out, and said; otherwise they are an error.
   bool skip_missing = false;
@@ -76,11 +76,19 @@ struct StudyFile {
 /// an InputError with file, line and key. Configurations and recordings are not yet looked at.
 [[nodiscard]] StudyFile ParseStudyFile(std::string_view yaml, const std::filesystem::path& file,
                                        bool quick);
+/// Makes a stream's paths independent of where the study's file lies: a recording's folder, found
+/// below `data` where that is not empty, and files that its simulation reads.
+void MakePathsAbsolute(const std::filesystem::path& study_file, const std::filesystem::path& data,
+                       StudyStream* stream);
+
 /// The same from a document that has been read.
 [[nodiscard]] StudyFile StudyOfYaml(YamlNode root, const std::filesystem::path& file, bool quick);
 [[nodiscard]] StudyFile ReadStudyFile(const std::filesystem::path& file, bool quick);
 
-/// The study as a file that says the same, without other files and with nothing left out.
+/// The items of `streams:` as a file has them, two blanks in.
+[[nodiscard]] std::string StreamsYaml(const std::vector<StudyStream>& streams);
+/// The study as a file that says the same, without other configuration files and with nothing left
+/// out. Its paths are taken as they are: a plan's are absolute.
 [[nodiscard]] std::string StudyYaml(const StudyFile& study);
 
 }  // namespace duet

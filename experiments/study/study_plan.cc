@@ -33,9 +33,9 @@ void AddChange(const StudyChange& change, const std::string& estimator, ConfigSo
 bool IsOfFrontend(const StudyKey& key) { return key.key.starts_with("frontend."); }
 
 /// What `told` names a file or folder beside the study's file is found there.
-std::string BesideStudy(const StudyFile& study, const std::string& told) {
+std::string BesideStudy(const fs::path& study_file, const std::string& told) {
   if (told.empty() || fs::path(told).is_absolute()) return told;
-  const fs::path beside = fs::path(study.file).parent_path() / told;
+  const fs::path beside = study_file.parent_path() / told;
   return fs::exists(beside) ? fs::absolute(beside).lexically_normal().string() : told;
 }
 
@@ -106,6 +106,9 @@ class Planner {
   }
 
   StudyPlan Make() {
+    for (StudyStream& stream : plan_.study.streams) {
+      MakePathsAbsolute(study().file, data_, &stream);
+    }
     if (study().skip_missing) SkipMissing();
     for (std::size_t i = 0; i < study().streams.size(); ++i) AddStream(static_cast<int>(i));
     if (plan_.runs.empty()) throw InputError(study().file, 0, "", "has no run: the grid is empty");
@@ -138,33 +141,35 @@ class Planner {
     }
     ConfigSources sources;
     const SimulationOptions options = SimulationOf(study(), stream, 1, &sources);
+    if (options.duration_s <= 0.0) {  // not every motion has an end of its own
+      try {
+        (void)MakeScenario(options, /*textures=*/false);
+      } catch (const InputError& error) {
+        throw InputError(study().file, stream.line, "streams." + stream.name, error.what());
+      }
+    }
     const double rate_hz = options.camera_rate_hz;
     frames_ = static_cast<int>(options.duration_s * rate_hz) + 1;
   }
 
-  [[nodiscard]] fs::path PathOf(const StudyStream& stream) const {
-    fs::path path = stream.dataset;
-    if (path.is_relative()) {
-      path = (data_.empty() ? fs::path(study().file).parent_path() : data_) / path;
-    }
-    return fs::absolute(path).lexically_normal();
-  }
-
   void SkipMissing() {
     std::vector<StudyStream>& streams = plan_.study.streams;
+    std::vector<std::string> left_out;
     std::erase_if(streams, [&](const StudyStream& stream) {
-      const bool missing = !stream.simulated() && !fs::exists(PathOf(stream));
-      if (missing) LOG(WARNING) << PathOf(stream).string() << " is not there and left out";
+      const bool missing = !stream.simulated() && !known_.contains(RecordingKey(stream)) &&
+                           !fs::exists(stream.dataset);
+      if (missing) left_out.push_back(stream.dataset);
       return missing;
     });
     if (streams.empty()) {
       throw InputError(study().file, 0, "streams",
                        "none of the recordings is there; --data names the folder that they are in");
     }
+    for (const std::string& path : left_out) LOG(WARNING) << path << " is not there and left out";
   }
 
   void LookAtRecording(const StudyStream& stream) {
-    const fs::path path = PathOf(stream);
+    const fs::path path = stream.dataset;
     const std::string key = RecordingKey(stream);
     const auto found = known_.find(key);
     plan_.recordings[key] = found != known_.end() && found->second.path == path
@@ -173,19 +178,13 @@ class Planner {
     frames_ = plan_.recordings[key].frames;
   }
 
-  /// Seeds of a recording without a start of their own would repeat what is there, where nothing
-  /// else is drawn.
-  [[nodiscard]] int SeedsOf(const StudyStream& stream, const CalibrationPriors& priors) const {
-    const int seeds = study().seeds.last - study().seeds.first + 1;
+  static bool Draws(const StudyStream& stream, const CalibrationPriors& priors) {
     const ToldErrors& told = priors.told_errors;
     const bool draws_told = told.T_g != 0.0 || told.T_s != 0.0 || told.T_a != 0.0 ||
                             told.p_CB_m != 0.0 || told.R_CB_rad != 0.0 ||
                             told.intrinsics_px != 0.0 || told.distortion != 0.0 ||
                             told.distortion_share != 0.0 || told.t_d_s != 0.0 || told.t_r_s != 0.0;
-    if (stream.simulated() || stream.jitter_px > 0.0 || stream.init == "drawn" || draws_told) {
-      return seeds;
-    }
-    return std::min(seeds, static_cast<int>(stream.starts_s.size()));
+    return stream.simulated() || stream.jitter_px > 0.0 || stream.init == "drawn" || draws_told;
   }
 
   void AddCells(int index, int setting, int perturbation) {
@@ -200,19 +199,25 @@ class Planner {
       ConfigSources sources = SourcesOfRun(plan_, cell);
       Configuration configuration;
       configuration.Read(&sources);
-      const int seeds = SeedsOf(stream, configuration.shared.calibration);
+      const bool draws = Draws(stream, configuration.shared.calibration);
+      int seeds = study().seeds.last - study().seeds.first + 1;
+      // Seeds of a recording without a start of their own would repeat what is there.
+      if (!draws) seeds = std::min(seeds, static_cast<int>(stream.starts_s.size()));
       const std::string settings = RunSettingsSha256(sources.values(), estimator);
       for (int k = 0; k < seeds; ++k) {
         cell.seed = study().seeds.first + k;
-        AddCell(cell, k, settings);
+        AddCell(cell, k, draws, settings);
       }
     }
   }
 
-  void AddCell(PlannedRun cell, int index_of_seed, const std::string& settings) {
+  /// `draws`: something is drawn with the seed, for the input or for the estimator.
+  void AddCell(PlannedRun cell, int index_of_seed, bool draws, const std::string& settings) {
     const StudyStream& stream = plan_.StreamOf(cell);
-    // Where the seed moves the pixels, it moves nothing else.
-    cell.draw_seed = stream.jitter_px > 0.0 ? stream.simulation_seed.value_or(1) : cell.seed;
+    // Where the seed moves the pixels, it moves nothing else; of a recording it may decide nothing.
+    cell.draw_seed = stream.jitter_px > 0.0 ? stream.simulation_seed.value_or(1)
+                     : draws                ? cell.seed
+                                            : 1;
     cell.planned_stream = InputFor(cell);
     const PlannedStream& input = plan_.InputOf(cell);
     cell.determined_by = Line("duet run", "1") + Line("stream", input.id) +
@@ -279,6 +284,19 @@ class Planner {
 
 }  // namespace
 
+void MakePathsAbsolute(const fs::path& study_file, const fs::path& data, StudyStream* stream) {
+  if (!stream->simulated()) {
+    fs::path path = stream->dataset;
+    if (path.is_relative()) path = (data.empty() ? study_file.parent_path() : data) / path;
+    stream->dataset = fs::absolute(path).lexically_normal().string();
+  }
+  const std::set<std::string> paths = {"simulation.sensors", "simulation.imu",
+                                       "simulation.trajectory"};
+  for (StudyKey& key : stream->set) {
+    if (paths.contains(key.key)) key.value.scalar = BesideStudy(study_file, key.value.scalar);
+  }
+}
+
 std::string RecordingKey(const StudyStream& stream) {
   std::string key = stream.dataset + " [";
   for (const int camera : stream.cameras) {
@@ -312,9 +330,9 @@ SimulationOptions SimulationOf(const StudyFile& study, const StudyStream& stream
   sources->AddText("simulation:\n  seed: " + std::to_string(seed) + "\n", "stream " + stream.name);
   sources->Read("simulation", &options);
   sources->CheckAllKeysUsed();
-  options.sensors = BesideStudy(study, options.sensors);
-  options.imu = BesideStudy(study, options.imu);
-  options.trajectory = BesideStudy(study, options.trajectory);
+  options.sensors = BesideStudy(study.file, options.sensors);
+  options.imu = BesideStudy(study.file, options.imu);
+  options.trajectory = BesideStudy(study.file, options.trajectory);
   return options;
 }
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,10 +17,18 @@ namespace duet {
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> StudyTexts(
     const StudyFolder& folder);
 
-/// What is made of a study besides, at its end: figures, report.
-using StudyFinish = std::function<void(const StudyFolder& folder)>;
+/// What is made of a study besides, at its end: figures, report. Returns their files, by their
+/// paths in the folder.
+using StudyFinish = std::function<std::vector<std::string>(const StudyFolder& folder)>;
 
-/// Writes the texts, calls `finish`, then writes the manifest. Throws InputError and OutputError.
+/// The files that `finish` has made when the study was last done, with their SHA-256; empty where
+/// it has not been done.
+[[nodiscard]] std::map<std::string, std::string> ReadProducts(const std::filesystem::path& folder);
+
+/// Writes the texts, calls `finish`, then writes the manifest, which lists what `finish` made. What
+/// an earlier study of this folder made and this one does not (tables of other metrics, figures
+/// that are no longer asked for) is removed; files of others stay. Throws InputError and
+/// OutputError.
 void WriteStudyProducts(const std::filesystem::path& folder, bool quick,
                         const std::string& command_line, const StudyFinish& finish);
 

@@ -42,7 +42,21 @@ Session OpenStudySession(const StudyPlan& plan, const PlannedRun& run, const fs:
   return session;
 }
 
-std::string StudyJson(const StudyPlan& plan, const PlannedRun& run, const fs::path& record) {
+/// study.json with its own hash: that of the same text without it.
+std::string Sealed(Json json) {
+  json["own_sha256"] = "";
+  json["own_sha256"] = Sha256Hex(json.dump());
+  return json.dump(2) + "\n";
+}
+
+bool IsSealed(Json json) {
+  const std::string hash = json.value("own_sha256", "");
+  json["own_sha256"] = "";
+  return hash == Sha256Hex(json.dump());
+}
+
+std::string StudyJson(const StudyPlan& plan, const PlannedRun& run, const fs::path& stream_folder,
+                      const fs::path& record) {
   const StudyFile& study = plan.study;
   Json json = {
       {"id", run.id},
@@ -53,12 +67,17 @@ std::string StudyJson(const StudyPlan& plan, const PlannedRun& run, const fs::pa
       {"perturbation", study.perturbations[static_cast<std::size_t>(run.perturbation)].name},
       {"seed", run.seed},
       {"stream_id", plan.InputOf(run).id},
+      {"stream_sha256", Sha256Hex(ReadTextFile(stream_folder / "stream.json"))},
       {"determined_by", run.determined_by},
-      {"sha256", Json::object()}};
+      {"sha256", Json::object()},
+      {"bytes", Json::object()}};
   for (const std::string& name : CanonicalFiles()) {
-    if (fs::exists(record / name)) json["sha256"][name] = Sha256Hex(ReadTextFile(record / name));
+    if (!fs::exists(record / name)) continue;
+    const std::string text = ReadTextFile(record / name);
+    json["sha256"][name] = Sha256Hex(text);
+    json["bytes"][name] = text.size();
   }
-  return json.dump(2) + "\n";
+  return Sealed(std::move(json));
 }
 
 }  // namespace
@@ -78,8 +97,10 @@ ExitStatus RunStudyRun(const StudyPlan& plan, const PlannedRun& run, const fs::p
                        const std::string& command_line) {
   const fs::path target = RecordFolderOf(study_folder, run.id);
   if (fs::exists(target)) {
-    RequireOwnVersion(target);
-    return kDone;
+    if (DamageOfRecord(target).empty()) return kDone;
+    std::error_code error;
+    fs::remove_all(target, error);
+    if (error) throw OutputError(target.string(), "cannot be removed: " + error.message());
   }
   if (!EnsureStream(plan, plan.InputOf(run), study_folder)) return kInterrupted;
   const auto start = std::chrono::steady_clock::now();
@@ -97,7 +118,7 @@ ExitStatus RunStudyRun(const StudyPlan& plan, const PlannedRun& run, const fs::p
   WriteRunEvaluation(
       EvaluateRecord(record.path(), session.recording, plan.StreamOf(run).simulated()),
       record.path());
-  WriteTextFile(record.path() / "study.json", StudyJson(plan, run, record.path()));
+  WriteTextFile(record.path() / "study.json", StudyJson(plan, run, stream_folder, record.path()));
   (void)record.folder().CommitUnlessThere();  // another's record is the same
   return kDone;
 }
@@ -111,6 +132,9 @@ StudyRecordInfo ReadRecordInfo(const fs::path& record) {
     info.id = json.at("id").get<std::string>();
     info.determined_by = json.at("determined_by").get<std::string>();
     info.stream_id = json.at("stream_id").get<std::string>();
+    info.stream_sha256 = json.value("stream_sha256", "");
+    info.bytes = json.value("bytes", std::map<std::string, std::uintmax_t>());
+    info.unchanged = IsSealed(json);
     for (const auto& [name, hash] : json.at("sha256").items()) {
       info.files.emplace_back(name, hash.get<std::string>());
     }
@@ -118,6 +142,33 @@ StudyRecordInfo ReadRecordInfo(const fs::path& record) {
     throw InputError(file.string(), 0, "", std::string("describes no run: ") + error.what());
   }
   return info;
+}
+
+std::string DamageOfRecord(const fs::path& record) {
+  for (const char* name : {"manifest.json", "study.json"}) {
+    if (!fs::exists(record / name)) return std::string(name) + " is missing";
+    if (!Json::accept(ReadTextFile(record / name))) return std::string(name) + " is torn";
+  }
+  RequireOwnVersion(record);
+  StudyRecordInfo info;
+  try {
+    info = ReadRecordInfo(record);
+  } catch (const InputError&) {
+    return "study.json lacks keys";
+  }
+  if (info.bytes.empty()) return "study.json lists no files";
+  for (const char* name : {"config.yaml", "timing.csv"}) {
+    if (!fs::exists(record / name)) return std::string(name) + " is missing";
+  }
+  for (const auto& [name, size] : info.bytes) {
+    std::error_code error;
+    if (!fs::exists(record / name, error)) return name + " is missing";
+    const std::uintmax_t found = fs::file_size(record / name, error);
+    if (error || found != size) {
+      return name + " has " + std::to_string(found) + " bytes, not " + std::to_string(size);
+    }
+  }
+  return "";
 }
 
 }  // namespace duet

@@ -60,30 +60,49 @@ void RequireSameStudy(const StudyFile& study, const fs::path& folder) {
 void WritePlan(const StudyPlan& plan, const fs::path& folder) {
   MakeFolder(folder / "runs");
   MakeFolder(folder / "streams");
-  ReplaceTextFile(folder / "study.yaml", StudyYaml(plan.study));
-  ReplaceTextFile(folder / "plan.csv", PlanCsv(plan));
+  StudyFile written = plan.study;
   if (!plan.study.published.empty()) {
+    written.published = "published";  // the folder's own copy
     MakeFolder(folder / "published");
     for (const fs::directory_entry& entry : fs::directory_iterator(plan.study.published)) {
       if (entry.path().extension() != ".csv") continue;
       ReplaceTextFile(folder / "published" / entry.path().filename(), ReadTextFile(entry.path()));
     }
+  } else {
+    std::error_code ignored;
+    fs::remove_all(folder / "published", ignored);  // of an earlier form of the study
   }
   if (!plan.recordings.empty()) WriteRecordings(plan.recordings, folder);
+  ReplaceTextFile(folder / "study.yaml", StudyYaml(written));
+  ReplaceTextFile(folder / "plan.csv", PlanCsv(plan));
 }
 
-/// Indices of the runs without a record; records of another version are refused.
-std::vector<int> RunsLeft(const StudyPlan& plan, const fs::path& folder) {
+/// Indices of the runs without a whole record; records of another version are refused. `damaged`:
+/// a line for each record that is there and has to be made again.
+std::vector<int> RunsLeft(const StudyPlan& plan, const fs::path& folder,
+                          std::vector<std::string>* damaged = nullptr) {
   std::vector<int> left;
   for (const int index : plan.Distinct()) {
-    const fs::path record = RecordFolderOf(folder, plan.runs[static_cast<std::size_t>(index)].id);
-    if (fs::exists(record)) {
-      RequireOwnVersion(record);
-    } else {
-      left.push_back(index);
-    }
+    const std::string& id = plan.runs[static_cast<std::size_t>(index)].id;
+    const fs::path record = RecordFolderOf(folder, id);
+    const bool is_there = fs::exists(record);
+    const std::string damage = is_there ? DamageOfRecord(record) : "";
+    if (is_there && damage.empty()) continue;
+    left.push_back(index);
+    if (is_there && damaged != nullptr) damaged->push_back("runs/" + id + ": " + damage);
   }
   return left;
+}
+
+/// Streams whose runs are there already and that are not themselves, made again. False where the
+/// program was interrupted.
+bool RestoreStreams(const StudyPlan& plan, const fs::path& folder) {
+  std::set<std::string> seen;
+  for (const PlannedStream& stream : plan.streams) {
+    if (!seen.insert(stream.id).second || fs::exists(StreamFolder(folder, stream.id))) continue;
+    if (!EnsureStream(plan, stream, folder)) return false;
+  }
+  return true;
 }
 
 /// What main() does with exceptions, in a child.
@@ -209,7 +228,9 @@ int RunStudy(StudyFile study, const StudyChoices& choices) {
   RequireSameStudy(plan.study, choices.out);
   MakeFolder(choices.out);
   const StudyLock lock = LockFolder(choices.out, StudyLock::Kind::kExclusive);
-  std::vector<int> left = RunsLeft(plan, choices.out);
+  std::vector<std::string> damaged;
+  std::vector<int> left = RunsLeft(plan, choices.out, &damaged);
+  for (const std::string& line : damaged) PrintWarning(line + "; it is run again");
   WritePlan(plan, choices.out);
   for (const char* part : {"", "runs", "streams", "tables", "figures", "failures", "published"}) {
     RemoveAbandonedPartials(choices.out / part);
@@ -221,7 +242,8 @@ int RunStudy(StudyFile study, const StudyChoices& choices) {
                  all);
   }
   StudyExecution execution(plan, choices, std::move(left));
-  const int status = execution.Run();
+  int status = execution.Run();
+  if (status == kDone && !RestoreStreams(plan, choices.out)) status = kInterrupted;
   if (status != kDone) {
     const std::size_t open = RunsLeft(plan, choices.out).size();
     std::fprintf(stderr, "duet: %zu of %zu runs are done and kept; the same command goes on\n",

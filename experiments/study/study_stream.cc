@@ -6,6 +6,7 @@
 #include "common/support/logging.h"
 #include "common/support/output_folder.h"
 #include "common/support/random.h"
+#include "common/support/sha256.h"
 #include "common/support/text_file.h"
 #include "experiments/interrupt.h"
 #include "experiments/manifest.h"
@@ -100,6 +101,25 @@ std::optional<Recording> MakeRecording(const StudyPlan& plan, const PlannedStrea
   return recording;
 }
 
+/// Every file of a stream but those that describe it, by its path in the folder.
+std::map<std::string, std::string> HashesOf(const fs::path& folder) {
+  std::map<std::string, std::string> hashes;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string path = entry.path().lexically_relative(folder).generic_string();
+    if (!entry.is_regular_file() || path == "stream.json" || path == "manifest.json") continue;
+    hashes[path] = Sha256Hex(ReadTextFile(entry.path()));
+  }
+  return hashes;
+}
+
+void RequireUnchanged(const fs::path& folder) {
+  const auto changes = ChangesOfStream(folder, ReadStreamInfo(folder));
+  if (changes.empty()) return;
+  throw InputError((folder / changes.front().first).string(), 0, "",
+                   changes.front().second + "; remove " + folder.string() +
+                       " to have the stream made anew, and see duet verify for its runs");
+}
+
 /// Writes the stream; false where the program was interrupted, or another one was first.
 bool MakeStream(const StudyPlan& plan, const PlannedStream& planned, const fs::path& study_folder) {
   const bool simulated = plan.study.streams[static_cast<std::size_t>(planned.stream)].simulated();
@@ -115,7 +135,8 @@ bool MakeStream(const StudyPlan& plan, const PlannedStream& planned, const fs::p
   const nlohmann::ordered_json json = {{"id", planned.id},
                                        {"determined_by", planned.determined_by},
                                        {"simulated", simulated},
-                                       {"tracks_sha256", tracks_sha256}};
+                                       {"tracks_sha256", tracks_sha256},
+                                       {"sha256", HashesOf(output.path())}};
   WriteTextFile(output.path() / "stream.json", json.dump(2) + "\n");
   WriteManifest(StartManifest(""), output.path());
   return output.CommitUnlessThere();
@@ -139,6 +160,7 @@ bool EnsureStream(const StudyPlan& plan, const PlannedStream& stream,
     }
   }
   RequireOwnVersion(folder);
+  RequireUnchanged(folder);
   return true;
 }
 
@@ -160,10 +182,29 @@ StudyStreamInfo ReadStreamInfo(const fs::path& stream_folder) {
     return {.id = json.at("id").get<std::string>(),
             .determined_by = json.at("determined_by").get<std::string>(),
             .simulated = json.at("simulated").get<bool>(),
-            .tracks_sha256 = json.at("tracks_sha256").get<std::string>()};
+            .tracks_sha256 = json.at("tracks_sha256").get<std::string>(),
+            .files = json.value("sha256", std::map<std::string, std::string>())};
   } catch (const nlohmann::ordered_json::exception& error) {
     throw InputError(file.string(), 0, "", std::string("describes no stream: ") + error.what());
   }
+}
+
+std::vector<std::pair<std::string, std::string>> ChangesOfStream(const fs::path& stream_folder,
+                                                                 const StudyStreamInfo& info) {
+  const std::map<std::string, std::string> found = HashesOf(stream_folder);
+  std::vector<std::pair<std::string, std::string>> changes;
+  for (const auto& [path, hash] : info.files) {
+    const auto file = found.find(path);
+    if (file == found.end()) {
+      changes.emplace_back(path, "is missing");
+    } else if (file->second != hash) {
+      changes.emplace_back(path, "has changed since it was written");
+    }
+  }
+  for (const auto& [path, hash] : found) {
+    if (!info.files.contains(path)) changes.emplace_back(path, "is not of the stream");
+  }
+  return changes;
 }
 
 }  // namespace duet

@@ -38,7 +38,8 @@ std::string ValueOfLine(const std::string& lines, const std::string& key) {
 
 class StudyVerifier {
  public:
-  explicit StudyVerifier(const fs::path& folder) : folder_(folder) {}
+  StudyVerifier(const fs::path& folder, const StudyDerivation& derive)
+      : folder_(folder), derive_(derive) {}
 
   StudyVerification Verify() {
     if (!IsStudyFolder(folder_)) {
@@ -51,6 +52,7 @@ class StudyVerifier {
       if (Interrupted()) return std::move(result_);
       VerifyStream(stream, runs);
     }
+    if (result_.problems.empty()) VerifyPlan();
     if (result_.problems.empty()) VerifyTexts();
     NoteOthers(runs_of_stream);
     return std::move(result_);
@@ -65,12 +67,14 @@ class StudyVerifier {
     const fs::path folder = StreamFolder(folder_, id);
     std::optional<Recording> recording;
     StudyStreamInfo info;
+    std::string stream_sha256;
     if (!fs::exists(folder)) {
       Problem(folder, "is missing");
     } else {
       ++result_.streams;
       try {
         info = ReadStreamInfo(folder);
+        stream_sha256 = Sha256Hex(ReadTextFile(folder / "stream.json"));
         recording = CheckStream(folder, id, info);
       } catch (const InputError& error) {
         Problem(folder, error.what());
@@ -84,9 +88,9 @@ class StudyVerifier {
       }
       ++result_.runs;
       try {
-        CheckRecord(record, run, id);
+        const bool is_whole = CheckRecord(record, run, id, stream_sha256);
         const bool is_own = IsOwn(record);
-        if (recording && is_own) CheckEvaluation(record, *recording, info.simulated);
+        if (recording && is_own && is_whole) CheckEvaluation(record, *recording, info.simulated);
       } catch (const InputError& error) {
         Problem(record, error.what());
       }
@@ -107,6 +111,7 @@ class StudyVerifier {
     if (info.id != id || StudyId(info.determined_by) != id) {
       Problem(folder / "stream.json", "has changed: its lines do not give the id");
     }
+    for (const auto& [file, change] : ChangesOfStream(folder, info)) Problem(folder / file, change);
     RecordingOptions options;
     options.source = RecordingOptions::Source::kTracks;
     options.cameras = CamerasOfStream(folder);
@@ -118,16 +123,24 @@ class StudyVerifier {
     return recording;
   }
 
-  void CheckRecord(const fs::path& record, const std::string& id, const std::string& stream_id) {
+  /// False where files of it are missing. `stream_sha256`: of stream.json; empty: not known.
+  bool CheckRecord(const fs::path& record, const std::string& id, const std::string& stream_id,
+                   const std::string& stream_sha256) {
     const StudyRecordInfo info = ReadRecordInfo(record);
+    if (!info.unchanged) Problem(record / "study.json", "has changed since it was written");
+    if (!stream_sha256.empty() && info.stream_sha256 != stream_sha256) {
+      Problem(record, "ran on another streams/" + stream_id + " than there is now");
+    }
     if (info.id != id || StudyId(info.determined_by) != id || info.stream_id != stream_id ||
         ValueOfLine(info.determined_by, "stream") != stream_id) {
       Problem(record / "study.json", "has changed: its lines do not give the id");
     }
+    bool is_whole = true;
     std::set<std::string> listed;
     for (const auto& [name, hash] : info.files) {
       listed.insert(name);
       if (!fs::exists(record / name)) {
+        is_whole = false;
         Problem(record / name, "is missing");
       } else if (Sha256Hex(ReadTextFile(record / name)) != hash) {
         Problem(record / name, "has changed since it was written");
@@ -147,6 +160,7 @@ class StudyVerifier {
         ValueOfLine(info.determined_by, "settings_sha256")) {
       Problem(record / "config.yaml", "holds other settings than the record's id stands for");
     }
+    return is_whole;
   }
 
   void CheckEvaluation(const fs::path& record, const Recording& recording, bool simulated) {
@@ -160,12 +174,40 @@ class StudyVerifier {
     }
   }
 
+  void VerifyPlan() {
+    const fs::path file = folder_ / "study.yaml";
+    try {
+      const StudyPlan plan =
+          MakeStudyPlan(ReadStudyFile(file, /*quick=*/false), "", ReadRecordings(folder_));
+      if (PlanCsv(plan) != ReadTextFile(folder_ / "plan.csv")) {
+        Problem(folder_ / "plan.csv", "is not the grid that study.yaml gives");
+      }
+    } catch (const InputError& error) {
+      Problem(file, error.what());
+    }
+  }
+
   void VerifyTexts() {
-    for (const auto& [name, text] : StudyTexts(ReadStudyFolder(folder_))) {
+    const StudyFolder study = ReadStudyFolder(folder_);
+    auto texts = StudyTexts(study);
+    if (derive_) {
+      for (auto& text : derive_(study)) texts.push_back(std::move(text));
+    }
+    std::set<std::string> derived;
+    for (const auto& [name, text] : texts) {
+      derived.insert(name);
       if (!fs::exists(folder_ / name)) {
         Problem(folder_ / name, "is missing; the study's command writes it");
       } else if (ReadTextFile(folder_ / name) != text) {
         Problem(folder_ / name, "is not what the records give");
+      }
+    }
+    for (const auto& [name, hash] : ReadProducts(folder_)) {
+      if (derived.contains(name)) continue;
+      if (!fs::exists(folder_ / name)) {
+        Problem(folder_ / name, "is missing; the study's command writes it");
+      } else if (Sha256Hex(ReadTextFile(folder_ / name)) != hash) {
+        Problem(folder_ / name, "has changed since it was written");
       }
     }
   }
@@ -184,11 +226,14 @@ class StudyVerifier {
   }
 
   const fs::path folder_;
+  const StudyDerivation& derive_;
   StudyVerification result_;
 };
 
 }  // namespace
 
-StudyVerification VerifyStudy(const fs::path& folder) { return StudyVerifier(folder).Verify(); }
+StudyVerification VerifyStudy(const fs::path& folder, const StudyDerivation& derive) {
+  return StudyVerifier(folder, derive).Verify();
+}
 
 }  // namespace duet

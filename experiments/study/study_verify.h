@@ -1,8 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "experiments/study/study_records.h"
 
 namespace duet {
 
@@ -16,10 +20,17 @@ struct StudyVerification {
   std::vector<std::string> notes;
 };
 
-/// Derives everything again: ids of streams and runs from the lines that determine them, a run's
-/// settings from its config.yaml, the hashes of streams from their tracks and of records from their
-/// files, evaluations from records and streams, and every text of the folder from the records.
-/// Throws InputError where the folder is no study's.
-[[nodiscard]] StudyVerification VerifyStudy(const std::filesystem::path& folder);
+/// What a study's folder holds besides its texts, derived again: path in the folder and text.
+using StudyDerivation =
+    std::function<std::vector<std::pair<std::string, std::string>>(const StudyFolder& folder)>;
+
+/// Derives everything again: the plan from study.yaml, ids of streams and runs from the lines that
+/// determine them, a run's settings from its config.yaml, the hashes of streams and records from
+/// their files, evaluations from records and streams, every text of the folder from the records,
+/// and what `derive` gives; pictures are held against the hashes that manifest.json lists. What a
+/// stream was simulated or tracked from is not run again, nor are the estimators. Throws InputError
+/// where the folder is no study's.
+[[nodiscard]] StudyVerification VerifyStudy(const std::filesystem::path& folder,
+                                            const StudyDerivation& derive = nullptr);
 
 }  // namespace duet

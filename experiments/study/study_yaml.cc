@@ -93,11 +93,16 @@ std::string ChangesYaml(const std::vector<StudyChange>& changes) {
 
 }  // namespace
 
+std::string StreamsYaml(const std::vector<StudyStream>& streams) {
+  std::string text;
+  for (const StudyStream& stream : streams) text += StreamYaml(stream);
+  return text;
+}
+
 std::string StudyYaml(const StudyFile& study) {
   std::string text = "study: " + QuotedYaml(study.name) + "\n";
   text += "question: " + QuotedYaml(study.question) + "\n";
-  text += "streams:\n";
-  for (const StudyStream& stream : study.streams) text += StreamYaml(stream);
+  text += "streams:\n" + StreamsYaml(study.streams);
   text += "estimators: " + TextsYaml(study.estimators) + "\n";
   text += SetYaml(study.set, "");
   text += "settings:\n" + ChangesYaml(study.settings);
@@ -107,8 +112,10 @@ std::string StudyYaml(const StudyFile& study) {
   text += "baseline: " + QuotedYaml(study.baseline) + "\n";
   text += std::string("compare: ") + StudyCompareName(study.compare) + "\n";
   if (!study.metrics.empty()) text += "metrics: " + TextsYaml(study.metrics) + "\n";
-  if (!study.figures.empty()) text += "figures: " + TextsYaml(study.figures) + "\n";
+  if (study.figures) text += "figures: " + TextsYaml(*study.figures) + "\n";
   text += std::string("measure_time: ") + (study.measure_time ? "true" : "false") + "\n";
+  if (study.skip_missing) text += "skip_missing: true\n";
+  if (!study.published.empty()) text += "published: " + QuotedYaml(study.published) + "\n";
   return text;
 }
 

@@ -1,6 +1,8 @@
 #include "experiments/study/tuning_file.h"
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 #include <set>
 
 #include "backends/factory.h"
@@ -8,6 +10,7 @@
 #include "common/support/input_error.h"
 #include "common/support/nearest_name.h"
 #include "common/support/random.h"
+#include "evaluation/metrics.h"
 
 namespace duet {
 namespace {
@@ -48,6 +51,64 @@ SeedRange ReadReportSeeds(const YamlNode& root, const std::string& file, const S
                      "it");
   }
   return report;
+}
+
+std::string ReadObjective(const YamlNode& root, const std::string& file) {
+  const YamlNode& node = Required(root, "objective", file, "a metric");
+  const std::string key = AsText(node).value_or("");
+  const std::optional<Metric> metric = FindMetric(key);
+  if (!metric) {
+    throw InputError(file, node.line, "objective",
+                     "no metric is called '" + key + "'" + DidYouMean(key, MetricKeys()));
+  }
+  if (metric->better == Better::kNeither || (metric->is_nees() && !(metric->expected > 0.0))) {
+    throw InputError(file, node.line, "objective",
+                     "'" + key + "' does not tell which of two values is the better one");
+  }
+  return key;
+}
+
+/// True where two recordings share an instant.
+bool SpansOverlap(const StudyStream& a, const StudyStream& b) {
+  const auto end = [](const StudyStream& stream, double start_s) {
+    return stream.duration_s > 0.0 ? start_s + stream.duration_s
+                                   : std::numeric_limits<double>::infinity();
+  };
+  for (const double start_a : a.starts_s) {
+    for (const double start_b : b.starts_s) {
+      if (start_a < end(b, start_b) && start_b < end(a, start_a)) return true;
+    }
+  }
+  return false;
+}
+
+/// What was tuned on an input is not judged on it; a recording is the same on every seed.
+void CheckReportStreams(const TuningFile& tuning, const std::string& file, int line) {
+  const StudyFile& study = tuning.study;
+  const auto& of_report = tuning.report_streams.empty() ? study.streams : tuning.report_streams;
+  const auto seeds_of = [](const StudyStream& stream, const SeedRange& seeds) {
+    return stream.simulation_seed ? SeedRange{*stream.simulation_seed, *stream.simulation_seed}
+                                  : seeds;
+  };
+  for (StudyStream report : of_report) {
+    MakePathsAbsolute(file, "", &report);
+    for (StudyStream search : study.streams) {
+      MakePathsAbsolute(file, "", &search);
+      const SeedRange a = seeds_of(report, tuning.report_seeds);
+      const SeedRange b = seeds_of(search, study.seeds);
+      const bool same =
+          report.simulated()
+              ? report.simulate == search.simulate && a.first <= b.last && b.first <= a.last
+              : report.dataset == search.dataset && SpansOverlap(report, search);
+      if (!same) continue;
+      throw InputError(
+          file, line, "report_streams",
+          "'" + report.name +
+              "' of the report is what the search runs on: what was tuned on it is "
+              "not judged on it; expected other recordings, other parts of them (starts_s, "
+              "duration_s), or other seeds of a simulation");
+    }
+  }
 }
 
 std::vector<TuningDimension> ReadDimensions(const YamlNode& node, const std::string& file,
@@ -149,11 +210,20 @@ std::string TrialName(int trial) {
 
 }  // namespace
 
+std::vector<StudyStream> StreamsOfYaml(const YamlNode& list, const fs::path& file) {
+  YamlNode study = ParseYaml("study: streams\nstreams: []\n", file.string());
+  for (YamlNode::Entry& entry : study.entries) {
+    if (entry.key == "streams") entry.value = list;
+  }
+  return StudyOfYaml(std::move(study), file, /*quick=*/false).streams;
+}
+
 TuningFile ParseTuningFile(std::string_view yaml, const fs::path& path, bool quick) {
   const std::string file = path.string();
   YamlNode root = ParseYaml(yaml, file);
   if (root.kind != YamlNode::Kind::kMap) throw InputError(file, 0, "", "expected keys with values");
-  const std::set<std::string> own = {"budget", "objective", "report_seeds", "search"};
+  const std::set<std::string> own = {"budget", "objective", "report_seeds", "report_streams",
+                                     "search"};
   // quick may change the search too.
   YamlNode tuning = root;
   if (const YamlNode* changes = quick ? root.Find("quick") : nullptr) {
@@ -183,7 +253,10 @@ TuningFile ParseTuningFile(std::string_view yaml, const fs::path& path, bool qui
   StudyFile& study = result.study;
   result.budget = ReadBudget(tuning, file);
   result.report_seeds = ReadReportSeeds(tuning, file, study.seeds);
-  result.objective = AsText(Required(tuning, "objective", file, "a metric")).value_or("");
+  const YamlNode* streams = tuning.Find("report_streams");
+  if (streams != nullptr) result.report_streams = StreamsOfYaml(*streams, path);
+  CheckReportStreams(result, file, streams == nullptr ? 0 : streams->line);
+  result.objective = ReadObjective(tuning, file);
   if (std::find(study.metrics.begin(), study.metrics.end(), result.objective) ==
       study.metrics.end()) {
     study.metrics.insert(study.metrics.begin(), result.objective);

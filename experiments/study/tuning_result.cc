@@ -9,6 +9,7 @@
 #include "common/support/logging.h"
 #include "common/support/numeric_text.h"
 #include "common/support/text_file.h"
+#include "evaluation/metrics.h"
 #include "evaluation/statistics.h"
 
 namespace duet {
@@ -28,6 +29,30 @@ std::optional<double> MetricOfRun(const StudyRun& run, const std::string& key) {
 std::string PairOf(const StudyRun& run) {
   return run.estimator + "\n" + run.stream + "\n" + run.perturbation + "\n" +
          std::to_string(run.seed);
+}
+
+/// The logarithm of how many times worse than `base` a value is; nothing where there is no such
+/// factor.
+std::optional<double> LogRatio(const Metric& metric, double value, double base) {
+  const auto log_of_quotient = [](double a, double b) -> std::optional<double> {
+    if (a == b) return 0.0;
+    if (!(a > 0.0) || !(b > 0.0)) return std::nullopt;
+    return std::log(a / b);
+  };
+  switch (metric.better) {
+    case Better::kHigher:
+      return log_of_quotient(base, value);
+    case Better::kNearZero:
+      return log_of_quotient(std::abs(value), std::abs(base));
+    case Better::kNearExpected: {
+      const double log_ratio = metric.Score(value) - metric.Score(base);
+      return std::isfinite(log_ratio) ? std::optional(log_ratio) : std::nullopt;
+    }
+    case Better::kLower:
+    case Better::kNeither:
+      return log_of_quotient(value, base);
+  }
+  return std::nullopt;
 }
 
 double Median(std::vector<double> values) { return Summarize(std::move(values)).median; }
@@ -52,12 +77,12 @@ std::string KeysText(const StudyFile& study, const TuningTrial& trial) {
 }
 
 std::string SearchCsv(const StudyFile& study, const std::vector<TuningTrial>& trials) {
-  std::string text = "estimator,trial,runs,failed,coverage,objective,ratio,settings\n";
+  std::string text = "estimator,trial,runs,failed,without,coverage,objective,ratio,settings\n";
   for (const TuningTrial& trial : trials) {
     text += trial.estimator + "," + trial.setting + "," + std::to_string(trial.runs) + "," +
-            std::to_string(trial.failed) + "," + FormatNumber(trial.coverage) + "," +
-            FormatNumber(trial.objective) + "," + FormatNumber(trial.ratio) + "," +
-            KeysText(study, trial) + "\n";
+            std::to_string(trial.failed) + "," + std::to_string(trial.without) + "," +
+            FormatNumber(trial.coverage) + "," + FormatNumber(trial.objective) + "," +
+            FormatNumber(trial.ratio) + "," + KeysText(study, trial) + "\n";
   }
   return text;
 }
@@ -71,18 +96,20 @@ std::string SearchText(const StudyFile& study, const std::vector<TuningTrial>& t
   for (const std::string& estimator : study.estimators) {
     const TuningTrial& best = BestTrial(trials, estimator);
     text += estimator + ": " + best.setting + " (" + KeysText(study, best) + "), " + objective +
-            " at " + FormatFixed(best.ratio, 3) + " of the defaults'; " +
+            " at " + FormatFixed(best.ratio, 3) + " of the defaults' (below 1 is better); " +
             std::to_string(best.failed) + " of " + std::to_string(best.runs) + " runs failed\n";
   }
-  return text + "On seeds that the search has not seen the gain is smaller: run report.yaml.\n";
+  return text + "On inputs that the search has not seen the gain is smaller: run report.yaml.\n";
 }
 
 std::string ReportYaml(const StudyFile& study, const std::vector<TuningTrial>& trials,
-                       const SeedRange& seeds) {
+                       const SeedRange& seeds, std::vector<StudyStream> streams) {
   StudyFile report = study;
   report.name = study.name + " report";
-  report.question = "What does tuning buy on seeds that the search has not seen?";
+  report.question = "What does tuning buy on inputs that the search has not seen?";
   report.seeds = seeds;
+  if (!streams.empty()) report.streams = std::move(streams);
+  if (!report.published.empty()) report.published = "published";  // beside it
   report.settings = {{"default", {}, {}}, {"tuned", {}, {}}};
   for (const std::string& estimator : study.estimators) {
     const StudyChange& best = SettingOf(study, BestTrial(trials, estimator).setting);
@@ -98,6 +125,7 @@ std::string ReportYaml(const StudyFile& study, const std::vector<TuningTrial>& t
 
 std::vector<TuningTrial> TuningTrials(const StudyResult& result, const std::string& objective) {
   CHECK(!result.runs.empty());
+  const Metric metric = MetricOf(objective);
   const std::string defaults = result.runs.front().setting;
   std::map<std::string, double> of_defaults;
   std::vector<std::string> estimators;
@@ -110,6 +138,15 @@ std::vector<TuningTrial> TuningTrials(const StudyResult& result, const std::stri
     note(run.setting, &settings);
     const std::optional<double> value = MetricOfRun(run, objective);
     if (run.setting == defaults && !run.failed && value) of_defaults[PairOf(run)] = *value;
+  }
+  const bool is_held =
+      std::any_of(result.runs.begin(), result.runs.end(),
+                  [&](const StudyRun& run) { return run.failed || MetricOfRun(run, objective); });
+  if (!is_held) {
+    throw InputError("", 0, "objective",
+                     "no run holds '" + objective +
+                         "'; expected a metric that they have (of a calibration: one that is "
+                         "estimated)");
   }
   std::vector<TuningTrial> trials;
   for (const std::string& estimator : estimators) {
@@ -126,14 +163,16 @@ std::vector<TuningTrial> TuningTrials(const StudyResult& result, const std::stri
         ++trial.runs;
         const std::optional<double> value = MetricOfRun(run, objective);
         if (run.failed || !value) {
-          ++trial.failed;
+          ++(run.failed ? trial.failed : trial.without);
           continue;
         }
         values.push_back(*value);
         coverages.push_back(MetricOfRun(run, "coverage_share").value_or(0.0));
         const auto base = of_defaults.find(PairOf(run));
-        if (base == of_defaults.end() || !(base->second > 0.0) || !(*value > 0.0)) continue;
-        log_ratio += std::log(*value / base->second);
+        if (base == of_defaults.end()) continue;
+        const std::optional<double> log_of_pair = LogRatio(metric, *value, base->second);
+        if (!log_of_pair) continue;
+        log_ratio += *log_of_pair;
         ++pairs;
       }
       trial.objective = Median(values);
@@ -164,10 +203,14 @@ const TuningTrial& BestTrial(const std::vector<TuningTrial>& trials, const std::
 }
 
 std::string TuningYaml(const TuningFile& tuning) {
-  return "# A search's folder: study.yaml has the trials.\nobjective: " +
-         QuotedYaml(tuning.objective) +
-         "\nreport_seeds: " + std::to_string(tuning.report_seeds.first) + ".." +
-         std::to_string(tuning.report_seeds.last) + "\n";
+  std::string text = "# A search's folder: study.yaml has the trials.\nobjective: " +
+                     QuotedYaml(tuning.objective) +
+                     "\nreport_seeds: " + std::to_string(tuning.report_seeds.first) + ".." +
+                     std::to_string(tuning.report_seeds.last) + "\n";
+  if (!tuning.report_streams.empty()) {
+    text += "report_streams:\n" + StreamsYaml(tuning.report_streams);
+  }
+  return text;
 }
 
 bool IsTuningFolder(const fs::path& folder) { return fs::exists(folder / "tuning.yaml"); }
@@ -180,12 +223,15 @@ std::vector<std::pair<std::string, std::string>> TuningTexts(const StudyFolder& 
   if (objective == nullptr || seeds == nullptr) {
     throw InputError(file.string(), 0, "", "expected objective and report_seeds");
   }
+  std::vector<StudyStream> streams;
+  if (const YamlNode* list = root.Find("report_streams")) streams = StreamsOfYaml(*list, file);
   const std::vector<TuningTrial> trials = TuningTrials(folder.result, objective->scalar);
   return {{"search.csv", SearchCsv(folder.study, trials)},
           {"search.txt", SearchText(folder.study, trials, objective->scalar)},
           {"report.yaml",
            ReportYaml(folder.study, trials,
-                      ParseSeeds(seeds->scalar, file.string(), seeds->line, "report_seeds"))}};
+                      ParseSeeds(seeds->scalar, file.string(), seeds->line, "report_seeds"),
+                      std::move(streams))}};
 }
 
 }  // namespace duet

@@ -17,14 +17,18 @@ struct TuningTrial {
   std::string setting;
   int runs = 0;
   int failed = 0;
+  int without = 0;         ///< did not fail, but do not hold the objective
   double coverage = 0.0;   ///< median share of the runs that did not fail
   double objective = 0.0;  ///< its median over them
   /// Geometric mean of the objective over the defaults' on the same stream and seed, over those
-  /// that neither failed on: below 1 is better.
+  /// that neither failed on: below 1 is better. Of a metric that is better when higher, the
+  /// defaults' over its own; of a signed error by magnitudes; of a NEES the factor that it is from
+  /// its expectation, on either side, over the defaults' factor.
   double ratio = 0.0;
 };
 
-/// Trials by estimator, in the order of the study's settings.
+/// Trials by estimator, in the order of the study's settings. Throws InputError for an objective
+/// that is no metric, or that no run of the defaults holds.
 [[nodiscard]] std::vector<TuningTrial> TuningTrials(const StudyResult& result,
                                                     const std::string& objective);
 

@@ -49,6 +49,30 @@ class FigureTest : public testing::Test {
 };
 TemporaryFolder* FigureTest::folder_ = nullptr;
 
+// What is hardly spread may still turn; and options that a figure does not have are no matter of
+// taste.
+TEST_F(FigureTest, ATurningGyroscopeIsNotAtRestAndStrayOptionsAreRefused) {
+  for (const auto& [motion, status] : {std::pair{"circle", 2}, std::pair{"standstill", 0}}) {
+    const std::string recording = *folder_ / motion;
+    const ProgramResult made =
+        RunDuet({"simulate", "--preset", "room_easy", "--set",
+                 std::string("simulation.trajectory=") + motion, "--set", "simulation.duration_s=3",
+                 "--set", "simulation.max_tracks=20", "--out", recording});
+    ASSERT_EQ(made.status, 0) << made.err;
+    const ProgramResult drawn = RunDuet({"figure", "thesis_3_2", "--runs", recording, "--out",
+                                         *folder_ / ("rest_of_" + std::string(motion))});
+    EXPECT_EQ(drawn.status, status) << drawn.err;
+    if (status != 0) {
+      EXPECT_THAT(drawn.err, HasSubstr("does not rest"));
+    }
+  }
+  const std::string out = *folder_ / "stray";
+  EXPECT_THAT(RunDuet({"figure", "thesis_3_8", "--runs", "nowhere", "--out", out}).err,
+              HasSubstr("nowhere: does not exist"));
+  EXPECT_THAT(RunDuet({"figure", "thesis_3_8", "--component", "t_d", "--out", out}).err,
+              HasSubstr("--component: is of duet figure calibration alone"));
+}
+
 // From the real program's records, all kinds of what is drawn; the others have unit tests.
 TEST_F(FigureTest, FiguresOfAComparisonAreWrittenWholeWithTheirFontsEmbedded) {
   std::string fonts;

@@ -158,6 +158,29 @@ TEST_F(StudyTest, AGrownGridRunsOnlyWhatIsNew) {
   EXPECT_EQ(ReadFile(record + "/manifest.json"), before);
 }
 
+TEST_F(StudyTest, WhatItNoLongerMakesGoesAndWhatIsDamagedIsMadeAgain) {
+  WriteFile(study_, std::string(kTinyStudy) + "metrics: [ate.position_m, ate.orientation_deg]\n");
+  ASSERT_EQ(Run(out_).status, 0);
+  WriteFile(out_ + "/figures/own.csv", "of the user");
+  ASSERT_TRUE(fs::exists(out_ + "/tables/ate.orientation_deg.tex"));
+  const fs::path states = RecordsOf(out_).front() / "states.csv";
+  const std::string whole = ReadFile(states);
+  fs::remove(states);
+  fs::remove_all(fs::path(out_) / "streams" / FilesIn(out_ + "/streams").front());
+  std::string other = kTinyStudy;
+  other.replace(other.find("rmse_over_runs"), 14, "trajectory_top");
+  WriteFile(study_, other + "metrics: [ate.position_m]\n");
+  const ProgramResult again = Run(out_);
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr(": states.csv is missing; it is run again"));
+  EXPECT_EQ(ReadFile(states), whole);
+  EXPECT_FALSE(fs::exists(out_ + "/tables/ate.orientation_deg.tex"));
+  EXPECT_FALSE(fs::exists(out_ + "/figures/rmse_over_runs.csv"));
+  EXPECT_TRUE(fs::exists(out_ + "/figures/trajectory_top.csv"));
+  EXPECT_TRUE(fs::exists(out_ + "/figures/own.csv"));
+  EXPECT_EQ(RunDuet({"verify", out_}).status, 0);
+}
+
 TEST_F(StudyTest, AFullDiskStopsItAndLosesNothing) {
   std::string one = kTinyStudy;
   one.replace(one.find("1..2"), 4, "1..1");
@@ -232,6 +255,33 @@ TEST_F(StudyTest, VerifyFindsWhatIsMissingChangedOrOfAnotherVersion) {
         "tables/ate.position_m.tex: is not what the records give");
   finds(fs::path(out_) / "streams" / stream / "mav0" / "tracks0" / "data.csv",
         "streams/" + stream + ": its tracks have changed");
+  finds(fs::path(out_) / "streams" / stream / "mav0" / "imu0" / "data.csv",
+        "streams/" + stream + "/mav0/imu0/data.csv: has changed since it was written");
+  finds(fs::path(out_) / "figures" / "rmse_over_runs.csv",
+        "figures/rmse_over_runs.csv: is not what the records give");
+  finds(fs::path(out_) / "figures" / "rmse_over_runs.tex",
+        "figures/rmse_over_runs.tex: has changed since it was written");
+  finds(fs::path(out_) / "report.html", "report.html: is not what the records give");
+  const auto finds_instead = [&](const fs::path& file, const std::string& from,
+                                 const std::string& to, const std::string& problem) {
+    const std::string whole = ReadFile(file);
+    std::string other = whole;
+    other.replace(other.find(from), from.size(), to);
+    WriteFile(file, other);
+    EXPECT_THAT(verify().out, HasSubstr(problem));
+    WriteFile(file, whole);
+  };
+  finds_instead(record / "study.json", "\"stream\": \"room\"", "\"stream\": \"hall\"",
+                "runs/" + name + "/study.json: has changed since it was written");
+  finds_instead(out_ + "/study.yaml", "seeds: 1..2", "seeds: 1..3",
+                "plan.csv: is not the grid that study.yaml gives");
+  const std::string evaluation = ReadFile(record / "evaluation.json");
+  fs::remove(record / "evaluation.json");
+  const std::string without = verify().out;
+  EXPECT_THAT(without, HasSubstr("evaluation.json: is missing"));
+  EXPECT_EQ(without.find("evaluation.json"), without.rfind("evaluation.json"));
+  WriteFile(record / "evaluation.json", evaluation);
+  EXPECT_EQ(verify().status, 0);
 
   const std::string manifest = ReadFile(record / "manifest.json");
   std::string older = manifest;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/support/input_error.h"
@@ -14,6 +15,7 @@
 namespace duet {
 namespace {
 
+using testing::Contains;
 using testing::HasSubstr;
 
 std::string ErrorOf(const std::string& name, const FigureInput& input,
@@ -72,7 +74,7 @@ TEST(Figures, OfAStudyOneExampleIsShownOverTimeAndAllRunsInStatistics) {
   const FigureTable errors = ReadFigureTable(folder / "out/position_error.csv");
   EXPECT_NEAR(errors.Column("window: position error x").at(7), 0.2, 1e-12);
   EXPECT_THAT(ReadTextFile(folder / "out/position_error.csv"),
-              HasSubstr("One example of 6 runs: room, seed 1"));
+              HasSubstr("Drawn: stream room, seed 1 (of 3)."));
 
   MakeFigure("nees_over_time", input, folder / "out");
   const FigureTable nees = ReadFigureTable(folder / "out/nees_over_time.csv");
@@ -83,7 +85,61 @@ TEST(Figures, OfAStudyOneExampleIsShownOverTimeAndAllRunsInStatistics) {
   const Band band = MeanChiSquaredBand(3, 3, 0.95);
   EXPECT_NEAR(nees.Column("band of 3 runs: position NEES [-] from").front(), band.low, 1e-12);
   EXPECT_NEAR(nees.Column("band of 3 runs: position NEES [-] to").front(), band.high, 1e-12);
-  EXPECT_EQ(nees.comments.size(), 1u + 6 + 1);  // all six records
+  EXPECT_EQ(nees.comments.size(), 1u + 6 + 2);  // all six records, two notes
+}
+
+// A study whose baseline estimates nothing has its figure from the first setting that does; cells
+// that share a record are drawn once each.
+TEST(Figures, TheCalibrationIsThatOfTheFirstSettingThatEstimatesOne) {
+  const FiguresFolder folder;
+  for (const char* setting : {"off", "on"}) {
+    WriteTestRecord({.setting = setting, .seed = 1},
+                    folder / ("study/runs/" + std::string(setting)));
+  }
+  const auto states = folder / "study/runs/off/states.csv";
+  std::string without = ReadTextFile(states);
+  for (std::size_t at; (at = without.find("sigma_t_d")) != std::string::npos;) {
+    without.replace(at, 9, "other_t_d");
+  }
+  WriteTextFile(states, without);
+  WriteTextFile(folder / "study/plan.csv",
+                "#id,stream_id,stream,estimator,setting,perturbation,seed\n"
+                "off,s,room,msckf,off,none,1\non,s,room,msckf,on,none,1\n"
+                "on,s,room,msckf,on too,none,1\n");
+  const Figure figure = ComposeFigure("calibration", {.folders = {folder / "study"}});
+  EXPECT_EQ(figure.sources.size(), 1u);
+  EXPECT_EQ(figure.notes.back(), "Drawn: stream room, setting on (of 3), seed 1.");
+}
+
+// Medians over those that did not fail beat nobody, and the note says how many failed.
+TEST(Figures, CostIsComparedOnStreamsThatDifferInFeaturesAndWithoutSurvivors) {
+  const FiguresFolder folder;
+  std::string plan = "#id,stream_id,stream,estimator,setting,perturbation,seed\n";
+  for (const char* stream : {"few", "many", "hall"}) {
+    for (const int seed : {1, 2}) {
+      const std::string id = stream + std::to_string(seed);
+      plan += id + ",s," + stream + ",msckf,default,none," + std::to_string(seed) + "\n";
+      if (id == "few2") continue;  // left no record
+      WriteTestRecord({.states = 80, .stream = stream, .seed = seed},
+                      folder / ("study/runs/" + id));
+      WriteTextFile(folder / ("study/runs/" + id + "/evaluation.json"),
+                    "{\"metrics\": {\"ate.position_m\": 0.1}}\n");
+    }
+  }
+  WriteTextFile(folder / "study/plan.csv", plan);
+  WriteTextFile(folder / "study/study.yaml",
+                "study: s\nestimators: [msckf]\nseeds: 1..2\nstreams:\n"
+                "  - {name: few, simulate: room_easy, set: {simulation.max_tracks: 40}}\n"
+                "  - {name: many, simulate: room_easy, set: {simulation.max_tracks: 160}}\n"
+                "  - {name: hall, simulate: room_easy, set: {simulation.duration_s: 9}}\n");
+  const Figure figure = ComposeFigure("cost_against_accuracy", {.folders = {folder / "study"}});
+  EXPECT_THAT(figure.notes, Contains("Settings: 1 default on few, 2 default on many."));
+  EXPECT_THAT(figure.notes, Contains(HasSubstr("1 of 4 runs of msckf failed: left out")));
+  EXPECT_EQ(figure.notes.back(), "Drawn: 2 of 3 streams, 2 seeds.");
+  const auto front = std::find_if(figure.panels[0].series.begin(), figure.panels[0].series.end(),
+                                  [](const Series& series) { return series.name == "front"; });
+  ASSERT_NE(front, figure.panels[0].series.end());
+  EXPECT_EQ(front->columns[0].size(), 1u);
 }
 
 // The order of the grid, and cells that left no record, are in plan.csv.
@@ -98,12 +154,17 @@ TEST(Figures, OfAPlanTheFirstCellIsTheExampleAndCellsWithoutRecordHaveFailed) {
                 "msckf1,s,room,msckf,default,none,1\n");
   const FigureInput input{.folders = {folder / "study"}};
   const Figure errors = ComposeFigure("position_error", input);
-  EXPECT_THAT(errors.notes.back(), HasSubstr("One example of 4 runs: room, seed 3"));
+  EXPECT_THAT(errors.notes.back(), HasSubstr("Drawn: stream room, seed 3 (of 3)."));
   EXPECT_EQ(errors.sources.size(), 2u);
   const Figure rmse = ComposeFigure("rmse_over_runs", input);
-  EXPECT_THAT(rmse.notes.back(), HasSubstr("1 run failed"));
+  EXPECT_THAT(rmse.notes, Contains("1 of 3 runs of msckf failed: gaps."));
+  EXPECT_THAT(rmse.notes.back(), "Drawn: stream room, 3 seeds.");
   EXPECT_THAT(rmse.sources.front(), HasSubstr("no record"));
-  EXPECT_THAT(ComposeFigure("nees_over_time", input).notes.back(), HasSubstr("1 run failed"));
+  for (const char* name : {"nees_over_time", "relative_errors"}) {
+    EXPECT_THAT(ComposeFigure(name, input).notes,
+                Contains("1 of 3 runs of msckf failed: left out."))
+        << name;
+  }
 }
 
 // Of plain records the same estimator twice on one recording: told apart by name and look, and no
@@ -136,6 +197,40 @@ TEST(Figures, RmseIsTheStudysOwnWhereItHasBeenEvaluated) {
   EXPECT_NEAR(position[0], 0.0, 1e-9);  // a shift alone: aligned away
   EXPECT_EQ(position[1], 0.5);
   EXPECT_EQ(table.Column("msckf: orientation RMSE").at(1), 2.5);
+}
+
+// Two settings that one estimator does not tell apart share its record: each cell is drawn in its
+// own place, and once.
+TEST(Figures, CellsThatShareARecordAreDrawnOnceEach) {
+  const FiguresFolder folder;
+  for (const char* id : {"msckf", "window_a", "window_b"}) {
+    const std::string estimator = std::string(id).substr(0, 6) == "window" ? "window" : "msckf";
+    WriteTestRecord({.estimator = estimator, .setting = "a", .seed = 1},
+                    folder / ("study/runs/" + std::string(id)));
+    WriteTextFile(folder / ("study/runs/" + std::string(id) + "/evaluation.json"),
+                  "{\"metrics\": {\"ate.position_m\": 0.1}}\n");
+  }
+  WriteTextFile(folder / "study/plan.csv",
+                "#id,stream_id,stream,estimator,setting,perturbation,seed\n"
+                "msckf,s,room,msckf,a,none,1\nwindow_a,s,room,window,a,none,1\n"
+                "msckf,s,room,msckf,b,none,1\nwindow_b,s,room,window,b,none,1\n");
+  const FigureInput input{.folders = {folder / "study"}};
+  EXPECT_EQ(ComposeFigure("position_error", input).sources.size(), 2u);
+  MakeFigure("cost_against_accuracy", input, folder / "out");
+  const FigureTable table = ReadFigureTable(folder / "out/cost_against_accuracy.csv");
+  EXPECT_EQ(table.Column("msckf: position").size(), 2u);
+  EXPECT_EQ(table.Column("window: position").size(), 2u);
+}
+
+TEST(Figures, RecordsOfTwoVersionsAreNotDrawnTogether) {
+  const FiguresFolder folder;
+  WriteStudy(folder / "study");
+  const auto file = folder / "study/runs/msckf2/manifest.json";
+  std::string manifest = ReadTextFile(file);
+  manifest.replace(manifest.find("\"commit\": \"c\""), 13, "\"commit\": \"d\"");
+  WriteTextFile(file, manifest);
+  EXPECT_THAT(ErrorOf("rmse_over_runs", {.folders = {folder / "study"}}, folder / "out"),
+              HasSubstr("results of two are not mixed"));
 }
 
 TEST(Figures, BadInputIsOneLineThatSaysWhatToDo) {

@@ -108,6 +108,52 @@ TEST(StudyPlanTest, ThePlansTableReadsBack) {
                                        ",room,msckf,default,none,2\n"));
 }
 
+TEST(StudyPlanTest, ThePlansYamlGivesTheSamePlanFromAnywhere) {
+  const StudyPlan plan = PlanOf(WithStream(
+      "{name: a, simulate: room_easy, jitter_px: 0.01, set: {simulation.pixel_noise_px: 0.4}}",
+      "set: {shared.pixel_noise_px: 2}\nseeds: 2..3\nfigures: []\nskip_missing: true\n"
+      "settings: [{name: x}, {name: y, only: {msckf: {msckf.max_clones: 9}}}]\n"));
+  const StudyFile again = ParseStudyFile(StudyYaml(plan.study), "elsewhere/study.yaml", false);
+  EXPECT_EQ(PlanCsv(MakeStudyPlan(again, "")), PlanCsv(plan));
+  EXPECT_TRUE(again.skip_missing);
+  ASSERT_TRUE(again.figures.has_value());
+  EXPECT_TRUE(again.figures->empty());
+  // Paths count from the study's file, or from --data.
+  StudyStream stream;
+  stream.dataset = "MH";
+  MakePathsAbsolute("/studies/s.yaml", "", &stream);
+  EXPECT_EQ(stream.dataset, "/studies/MH");
+  stream.dataset = "MH";
+  MakePathsAbsolute("/studies/s.yaml", "/data", &stream);
+  EXPECT_EQ(stream.dataset, "/data/MH");
+}
+
+// Of a recording the seed decides nothing where nothing is drawn: it is in no id. What is known of
+// a recording is enough for a plan, wherever it has gone.
+TEST(StudyPlanTest, ARecordingsSeedCountsOnlyWhereSomethingIsDrawn) {
+  const StudyRecordings known = {
+      {"/gone/MH [0]", {.path = "/gone/MH", .fingerprint = "f", .frames = 40}}};
+  const auto plan = [&](const std::string& init, const std::string& seeds) {
+    const std::string yaml =
+        WithStream("{name: MH, dataset: /gone/MH, starts_s: [0, 5], init: " + init + "}",
+                   "skip_missing: true\nseeds: " + seeds + "\n");
+    return MakeStudyPlan(ParseStudyFile(yaml, "s.yaml", false), "", known);
+  };
+  EXPECT_EQ(plan("groundtruth", "1..2").runs.size(), 4U);
+  EXPECT_EQ(IdsOf(plan("groundtruth", "1..2")), IdsOf(plan("groundtruth", "3..9")));
+  EXPECT_NE(IdsOf(plan("drawn", "1..2")), IdsOf(plan("drawn", "3..4")));
+}
+
+TEST(StudyPlanTest, SeedsAreNoMoreThanAnIntHolds) {
+  EXPECT_EQ(PlanOf(WithStream(kRoom, "seeds: 99999999..99999999\n")).runs.front().seed, 99999999);
+  for (const char* seeds : {"1..4294967298", "4294967297..4294967298", "1..100000000", "-1..2",
+                            "+1..2", " 1..2", "1..", "..2", "1...2", "2..1"}) {
+    EXPECT_THAT([&] { (void)ParseSeeds(seeds); },
+                ThrowsMessage<InputError>(HasSubstr("expected A..B")))
+        << seeds;
+  }
+}
+
 TEST(StudyPlanTest, TheShippedStudiesAreWhole) {
   int studies = 0;
   for (const auto& entry : std::filesystem::directory_iterator(DUET_SOURCE "/configs/studies")) {
@@ -147,6 +193,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "s.yaml:4: msckf.max_clone: unknown key; did you mean 'max_clones'?"},
         BadPlan{WithStream(kRoom, "settings: [{name: a, set: {msckf.max_clones: 1}}]\n"),
                 "expected an integer from 3 to 100"},
+        BadPlan{WithStream("{name: a, simulate: room_easy, set: {simulation.duration_s: 0}}", ""),
+                "s.yaml:3: streams.a: duration_s: expected above 0 s"},
         BadPlan{WithStream("{name: MH, dataset: nowhere/MH_01_easy}", "skip_missing: true\n"),
                 "none of the recordings is there"},
         BadPlan{WithStream("{name: MH, dataset: nowhere/MH_01_easy}", ""),

@@ -18,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::ThrowsMessage;
 
 constexpr const char* kOneRun =
     "study: s\nstreams:\n  - name: room\n    simulate: room_easy\n"
@@ -90,6 +91,50 @@ TEST_F(StudyRunTest, IsThereOnceHoweverOftenItIsRun) {
   int entries = 0;
   for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder_ / "runs")) ++entries;
   EXPECT_EQ(entries, 1);
+}
+
+// Half of a record is none: it is made again, to the same bytes.
+TEST_F(StudyRunTest, ADamagedRecordIsNoticedAndMadeAgain) {
+  ASSERT_EQ(RunStudyRun(plan_, plan_.runs[0], folder_, ""), kDone);
+  const fs::path record = RecordFolderOf(folder_, plan_.runs[0].id);
+  EXPECT_EQ(DamageOfRecord(record), "");
+  const std::string states = ReadTextFile(record / "states.csv");
+  const std::string json = ReadTextFile(record / "study.json");
+  for (const char* name : {"states.csv", "manifest.json", "study.json", "config.yaml"}) {
+    const std::string whole = ReadTextFile(record / name);
+    fs::remove(record / name);
+    EXPECT_EQ(DamageOfRecord(record), std::string(name) + " is missing");
+    WriteTextFile(record / name, whole);
+  }
+  WriteTextFile(record / "study.json", json.substr(0, json.size() / 2));
+  EXPECT_EQ(DamageOfRecord(record), "study.json is torn");
+  WriteTextFile(record / "study.json", json);
+  WriteTextFile(record / "states.csv", states.substr(0, states.size() / 2));
+  EXPECT_THAT(DamageOfRecord(record), HasSubstr("states.csv has "));
+  ASSERT_EQ(RunStudyRun(plan_, plan_.runs[0], folder_, ""), kDone);
+  EXPECT_EQ(ReadTextFile(record / "states.csv"), states);
+  EXPECT_EQ(ReadTextFile(record / "study.json"), json);
+}
+
+// A run on another input than its id stands for is not made.
+TEST_F(StudyRunTest, AStreamThatHasChangedIsNotRunOn) {
+  ASSERT_TRUE(EnsureStream(plan_, plan_.streams[0], folder_));
+  const fs::path stream = StreamFolder(folder_, plan_.streams[0].id);
+  for (const char* name : {"mav0/imu0/data.csv", "mav0/imu0/sensor.yaml", "mav0/truth.yaml",
+                           "mav0/state_groundtruth_estimate0/data.csv"}) {
+    const std::string whole = ReadTextFile(stream / name);
+    WriteTextFile(stream / name, whole + "\n");
+    EXPECT_THAT([&] { (void)RunStudyRun(plan_, plan_.runs[0], folder_, ""); },
+                ThrowsMessage<InputError>(HasSubstr(std::string(name) + ": has changed since")));
+    fs::remove(stream / name);
+    EXPECT_THAT([&] { (void)RunStudyRun(plan_, plan_.runs[0], folder_, ""); },
+                ThrowsMessage<InputError>(HasSubstr(std::string(name) + ": is missing")));
+    WriteTextFile(stream / name, whole);
+  }
+  WriteTextFile(stream / "mav0/more.csv", "");
+  EXPECT_FALSE(ChangesOfStream(stream, ReadStreamInfo(stream)).empty());
+  fs::remove(stream / "mav0/more.csv");
+  EXPECT_EQ(RunStudyRun(plan_, plan_.runs[0], folder_, ""), kDone);
 }
 
 TEST_F(StudyRunTest, ACellWithoutARecordHasFailedAndSaysWhy) {

@@ -73,6 +73,24 @@ TEST(TuningTest, ASearchSaysTheSameTwiceAndGrowsWithItsBudget) {
   }
 }
 
+std::string TextOn(const std::string& stream, const std::string& more) {
+  std::string text = TuningText("11..12", "4", kSearch);
+  const std::string room = "{name: room, simulate: room_easy}";
+  return text.replace(text.find(room), room.size(), stream) + more;
+}
+std::string WithObjective(const std::string& objective) {
+  std::string text = TuningText("11..12", "4", kSearch);
+  return text.replace(text.find("ate.position_m"), 14, objective);
+}
+
+TEST(TuningTest, ARecordingIsReportedOnAnotherOrAnotherPart) {
+  const TuningFile tuning = ParseTuning(
+      TextOn("{name: a, dataset: MH, duration_s: 30}",
+             "report_streams: [{name: b, dataset: MH, starts_s: [30]}, {name: c, dataset: V1}]\n"));
+  ASSERT_THAT(tuning.report_streams, SizeIs(2));
+  EXPECT_THAT(TuningYaml(tuning), HasSubstr("report_streams:\n  - name: \"b\"\n"));
+}
+
 struct BadTuning {
   std::string yaml;
   std::string error;
@@ -95,6 +113,19 @@ INSTANTIATE_TEST_SUITE_P(
                   "expected a list of at least two values"},
         BadTuning{TuningText("11..12", "4", kSearch) + "settings: [{name: a}]\n",
                   "settings: has no place"},
+        BadTuning{TuningText("11..12", "4",
+                             kSearch + "report_streams: [{name: same, simulate: "
+                                       "room_easy, simulation_seed: 12}]\n"),
+                  "'same' of the report is what the search runs on"},
+        BadTuning{TextOn("{name: a, dataset: MH, starts_s: [0, 9]}", ""),
+                  "'a' of the report is what the search runs on"},
+        BadTuning{TextOn("{name: a, dataset: MH, duration_s: 30}",
+                         "report_streams: [{name: b, dataset: ./MH, starts_s: [29]}]\n"),
+                  "'b' of the report is what the search runs on"},
+        BadTuning{WithObjective("ate.position"),
+                  "objective: no metric is called 'ate.position'; "
+                  "did you mean 'ate.position_m'?"},
+        BadTuning{WithObjective("nees.calibration"), "does not tell which of two values"},
         BadTuning{TuningText("11..12", "4", kSearch) + "sed: 3\n", "sed: unknown key"}));
 
 StudyRun RunOf(const std::string& setting, int seed, double ate, bool failed = false,
@@ -128,6 +159,36 @@ TEST(TuningTest, TheBestCoversFailsNotAndIsBetterSeedBySeed) {
   EXPECT_NEAR(trials[2].ratio, 0.9, 1e-12);
   EXPECT_EQ(trials[3].failed, 1);
   EXPECT_EQ(BestTrial(trials, "msckf").setting, "b");
+}
+
+StudyRun WithMetric(const std::string& setting, const std::string& key, double value) {
+  StudyRun run = RunOf(setting, 1, 0.1);
+  run.metrics.emplace_back(key, value);
+  return run;
+}
+
+// Below 1 is better, whichever way the metric goes.
+TEST(TuningTest, TheRatioFollowsTheMetricsDirection) {
+  const auto ratio = [](const std::string& key, double of_default, double of_trial) {
+    StudyResult result;
+    result.runs = {WithMetric("default", key, of_default), WithMetric("a", key, of_trial)};
+    return TuningTrials(result, key)[1].ratio;
+  };
+  EXPECT_NEAR(ratio("calibration.t_d.error", -0.002, 0.001), 0.5, 1e-12);
+  EXPECT_NEAR(ratio("nees.pose", 12.0, 3.0), 1.0, 1e-12);  // twice too sure, twice too unsure
+  EXPECT_NEAR(ratio("nees.pose", 12.0, 6.0), 0.5, 1e-12);
+  EXPECT_NEAR(ratio("nees.pose", 6.0, 1.0), 6.0, 1e-12);
+}
+
+TEST(TuningTest, ARunWithoutTheObjectiveHasNotFailed) {
+  StudyResult result;
+  result.runs = {WithMetric("default", "calibration.t_d.error", 0.1), RunOf("a", 1, 0.1)};
+  const TuningTrial& trial = TuningTrials(result, "calibration.t_d.error")[1];
+  EXPECT_EQ(trial.failed, 0);
+  EXPECT_EQ(trial.without, 1);
+  result.runs = {RunOf("default", 1, 0.1)};
+  EXPECT_THAT([&] { (void)TuningTrials(result, "calibration.t_d.error"); },
+              ThrowsMessage<InputError>(HasSubstr("no run holds 'calibration.t_d.error'")));
 }
 
 }  // namespace
