@@ -28,20 +28,10 @@ class RunStatistics {
   // The truth is taken in the axes that the estimator's gauge ties the body to.
   RunStatistics(const SimulatedRecording& recording, const Eigen::Quaterniond& gauge,
                 double settle_s, MonteCarloRun* run)
-      : recording_(recording), gauge_(gauge), settle_s_(settle_s), run_(*run) {}
+      : recording_(recording), gauge_(gauge), settle_s_(settle_s), run_(*run), collector_(run) {}
 
   void Add(const EstimatorOutput& output) {
-    ++run_.frames;
-    run_.used += output.features.used;
-    run_.gated += output.features.gated;
-    if (output.status == EstimatorStatus::kDeadReckoning) ++run_.dead_reckoned;
-    if (output.status == EstimatorStatus::kInitializing) return;
-    if (first_ == 0) first_ = output.frame_timestamp;
-    run_.coverage_s = SecondsBetween(first_, output.frame_timestamp);
-    if (const int size = run_.calibration.layout().size(); size > 0) {
-      run_.calibration.Add(run_.coverage_s, output.rig,
-                           output.covariance.block(15, 15, size, size));
-    }
+    if (!collector_.Add(output)) return;
     const InertialState truth = Reoriented(recording_.TruthAt(output.state.instant), gauge_);
     run_.nees.samples.push_back(
         ComputeNees(output.frame_timestamp, truth, output.state, output.covariance));
@@ -54,7 +44,8 @@ class RunStatistics {
   }
 
   void Finish() {
-    run_.nees.start = first_;
+    collector_.Finish();
+    run_.nees.start = collector_.first_frame();
     run_.nees.failed = run_.failed;
     const double count = static_cast<double>(pairs_.size());
     if (pairs_.empty()) return;
@@ -76,7 +67,7 @@ class RunStatistics {
   Eigen::Quaterniond gauge_;
   double settle_s_;
   MonteCarloRun& run_;
-  Timestamp first_ = 0;
+  OutputCollector collector_;
   Vector15d squares_ = Vector15d::Zero();
   std::vector<PosePair> pairs_;
 };
@@ -92,6 +83,36 @@ std::string Format(const char* format, ...) {
 }
 
 }  // namespace
+
+bool OutputCollector::Add(const EstimatorOutput& output) {
+  ++run_.frames;
+  run_.used += output.features.used;
+  run_.gated += output.features.gated;
+  if (output.status == EstimatorStatus::kFailed) {
+    run_.failed = true;
+    run_.reason = output.reason;
+    return false;
+  }
+  if (output.status == EstimatorStatus::kDeadReckoning) ++run_.dead_reckoned;
+  const bool holds_state =
+      output.status != EstimatorStatus::kInitializing && output.covariance.size() > 0;
+  if (!holds_state) why_none_ = output.reason;
+  if (!holds_state || (has_state_ && output.state.instant <= newest_)) return false;
+  if (!has_state_) first_frame_ = output.frame_timestamp;
+  has_state_ = true;
+  newest_ = output.state.instant;
+  run_.coverage_s = SecondsBetween(first_frame_, output.frame_timestamp);
+  if (const int size = run_.calibration.layout().size(); size > 0) {
+    run_.calibration.Add(run_.coverage_s, output.rig, output.covariance.block(15, 15, size, size));
+  }
+  return true;
+}
+
+void OutputCollector::Finish() {
+  if (has_state_ || run_.failed) return;
+  run_.failed = true;
+  run_.reason = "has no state: " + why_none_;
+}
 
 Matrix15d StartCovariance(const InitializationOptions& start, double scale) {
   Vector15d sigma;
@@ -151,12 +172,8 @@ MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,
     const double before_ms = ThreadCpuMs();
     const EstimatorOutput& output = estimator->ProcessFrame(frames);
     frame_ms.push_back(ThreadCpuMs() - before_ms);
-    if (output.status == EstimatorStatus::kFailed) {
-      run.failed = true;
-      run.reason = output.reason;
-      break;
-    }
     statistics.Add(output);
+    if (run.failed) break;
   }
   statistics.Finish();
   const ErrorSummary cost = Summarize(frame_ms);

@@ -39,10 +39,10 @@ struct MonteCarloRun {
   int seed = 0;
   bool failed = false;
   std::string reason;
-  NeesRun nees;  ///< stamps are the frames'
-  int frames = 0;
-  int dead_reckoned = 0;
-  double coverage_s = 0.0;  ///< from the first to the last frame with a tracking output
+  NeesRun nees;             ///< stamps are the frames'
+  int frames = 0;           ///< given to the estimator
+  int dead_reckoned = 0;    ///< of these; skipped ones too
+  double coverage_s = 0.0;  ///< from the first to the last frame with a state of its own
   /// Root mean square, without alignment: the start error is part of it.
   double position_rms_m = 0.0;
   double orientation_rms_deg = 0.0;
@@ -66,6 +66,28 @@ struct MonteCarloResult {
   ConsistencyReport consistency;
 
   [[nodiscard]] const BlockConsistency& Block(NeesBlock block) const;  ///< CHECKs that it is there
+};
+
+/// Collects what a run's outputs say of themselves, in order: counts, coverage, the calibration.
+class OutputCollector {
+ public:
+  explicit OutputCollector(MonteCarloRun* run) : run_(*run) {}
+
+  /// True where the output holds a state that is newer than the last one. A frame that the IMU does
+  /// not cover leaves the state where it was; before the first that it covers there is none. Fails
+  /// the run where the estimator did.
+  [[nodiscard]] bool Add(const EstimatorOutput& output);
+  /// Fails a run that never had a state.
+  void Finish();
+
+  [[nodiscard]] Timestamp first_frame() const { return first_frame_; }  ///< with a state
+
+ private:
+  MonteCarloRun& run_;
+  bool has_state_ = false;
+  Timestamp first_frame_ = 0;
+  Timestamp newest_ = 0;
+  std::string why_none_ = "there was no frame";
 };
 
 /// The same result for any number of threads.

@@ -56,6 +56,30 @@ TEST(AblateTest, ComparesSubsetsWithTheSameBytesForAnyNumberOfJobs) {
   EXPECT_EQ(ReadFile(folder / "one/calibration.csv"), ReadFile(folder / "again/calibration.csv"));
 }
 
+// The IMU is too slow for shared.max_imu_gap_s: no frame gives a state.
+TEST(AblateTest, RunsWithoutAStateAreFailedRunsAndNoCrash) {
+  TemporaryFolder folder;
+  const ProgramResult simulated =
+      RunDuet(Ablate(folder / "simulated", {"--set", "simulation.imu_rate_hz=15"}, "t_d", "1..1"));
+  ASSERT_EQ(simulated.status, 0) << simulated.err;
+  EXPECT_THAT(simulated.out,
+              HasSubstr("failed: msckf, t_d, seed 1 after 0.0 s: the IMU has a gap"));
+  const auto cells = nlohmann::json::parse(ReadFile(folder / "simulated/ablation.json"));
+  for (const auto& cell : cells) {
+    EXPECT_EQ(cell["failed"], 1);
+    EXPECT_TRUE(cell["ate_position_m"]["median"].is_null());
+  }
+  const ProgramResult made =
+      RunDuet({"simulate", "--preset", "excited", "--set", "duration_s=3", "--set", "max_tracks=40",
+               "--out", folder / "data", "--quiet"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const ProgramResult recorded = RunDuet(
+      {"ablate", "--dataset", folder / "data", "--init", "groundtruth", "--states", "t_d",
+       "--seeds", "1..1", "--set", "shared.max_imu_gap_s=0.001", "--out", folder / "recorded"});
+  ASSERT_EQ(recorded.status, 0) << recorded.err;
+  EXPECT_THAT(recorded.out, HasSubstr("failed: window, t_d, seed 1 after 0.0 s: "));
+}
+
 TEST(AblateTest, BadInputIsOneClearLine) {
   TemporaryFolder folder;
   const std::string out = folder / "out";

@@ -1,4 +1,5 @@
-// Which subsets of the calibration an ablation runs, and in what order results come.
+// Which subsets of the calibration an ablation runs, in what order results come, and what counts of
+// a run.
 
 #include "experiments/ablation/ablation.h"
 
@@ -6,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+
+#include "backends/factory.h"
 
 namespace duet {
 namespace {
@@ -86,6 +89,50 @@ TEST(Ablation, StopsWhereItIsInterrupted) {
       [](int done) { return done < 3; });
   EXPECT_TRUE(cells.empty());
   EXPECT_EQ(runs, 3);
+}
+
+// A gap between IMU samples that is longer than shared.max_imu_gap_s, everywhere: no frame is used.
+TEST(RunOnce, FailsWithAReasonWhereNoFrameGivesAState) {
+  MonteCarloOptions options;
+  options.simulation = SimulationPreset("excited");
+  options.simulation.duration_s = 0.5;  // before the estimators give up themselves
+  options.simulation.imu_rate_hz = 15.0;
+  options.shared.calibration.t_d.estimated = true;
+  for (const std::string& name : EstimatorNames()) {
+    const MonteCarloRun run = RunOnce(
+        options, 1, [&](const EstimatorSetup& setup) { return MakeEstimator(name, setup, {}); });
+    EXPECT_TRUE(run.failed) << name;
+    EXPECT_THAT(run.reason, testing::HasSubstr("has no state: ")) << name;
+    EXPECT_THAT(run.reason, testing::HasSubstr("the IMU")) << name;
+    EXPECT_TRUE(run.nees.samples.empty()) << name;
+    EXPECT_EQ(run.coverage_s, 0.0) << name;
+    EXPECT_GT(run.dead_reckoned, 5) << name;
+  }
+}
+
+TEST(OutputCollector, TakesEachStateOnce) {
+  MonteCarloRun run;
+  OutputCollector collector(&run);
+  EstimatorOutput output;
+  output.frame_timestamp = 1;
+  output.status = EstimatorStatus::kDeadReckoning;
+  EXPECT_FALSE(collector.Add(output));  // skipped before there is a state
+  output.status = EstimatorStatus::kTracking;
+  output.covariance = Matrix15d::Identity();
+  for (const Timestamp stamp : {2'000'000'000LL, 3'000'000'000LL}) {
+    output.frame_timestamp = stamp;
+    output.state.instant = stamp;
+    EXPECT_TRUE(collector.Add(output));
+  }
+  output.frame_timestamp = 5'000'000'000;  // skipped: the state stays
+  output.status = EstimatorStatus::kDeadReckoning;
+  EXPECT_FALSE(collector.Add(output));
+  collector.Finish();
+  EXPECT_FALSE(run.failed);
+  EXPECT_EQ(run.frames, 4);
+  EXPECT_EQ(run.dead_reckoned, 2);
+  EXPECT_EQ(run.coverage_s, 1.0);
+  EXPECT_EQ(collector.first_frame(), 2'000'000'000);
 }
 
 }  // namespace
