@@ -143,6 +143,7 @@ void RunOnSimulation(const CommandLine& line, Ablation* ablation) {
   configuration.Read(&sources);
   options.shared = configuration.shared;
   options.start = configuration.initialization;
+  options.settle_s = configuration.evaluation.nees_settle_s;
   options.told_from_priors = false;
   ablation->plan = ReadPlan(configuration.shared);
   ablation->cells = RunPlan(
@@ -238,11 +239,13 @@ int RunAblate(const CommandLine& line) {
                    << ": no prediction: " << error.what();
     }
   }
-  const PredictedSigma predicted = [&](const AblationCell& cell) { return predictions[&cell]; };
-  const std::string text = AblationText(cells, simulated, predicted);
+  const AblationClaims claims{
+      .consistency = simulated,
+      .nees_settle_s = ablation.simulation.settle_s,
+      .predicted_sigma = [&](const AblationCell& cell) { return predictions[&cell]; }};
+  const std::string text = AblationText(cells, claims);
   WriteTextFile(record.path() / "ablation.txt", text);
-  WriteTextFile(record.path() / "ablation.json",
-                AblationJson(cells, simulated, predicted).dump(2) + "\n");
+  WriteTextFile(record.path() / "ablation.json", AblationJson(cells, claims).dump(2) + "\n");
   WriteTextFile(record.path() / "perturbation.yaml", PerturbationYaml(ablation.plan.priors));
   WriteTextFile(record.path() / "runs.csv", AblationRunsCsv(cells));
   WriteTextFile(record.path() / "calibration.csv", AblationCurvesCsv(cells));

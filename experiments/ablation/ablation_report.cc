@@ -10,7 +10,6 @@
 namespace duet {
 namespace {
 
-constexpr double kSettleSeconds = 2.0;
 constexpr double kPriorSigmas = 3.0;
 /// How often a told error that is drawn from its prior is larger than that.
 constexpr double kOutsidePriorByChance = 0.0026998;
@@ -34,8 +33,7 @@ struct CellSummary {
   std::vector<CalibrationBlockSummary> calibration;
 };
 
-CellSummary SummarizeCell(const AblationCell& cell, bool consistency,
-                          const PredictedSigma& predicted_sigma) {
+CellSummary SummarizeCell(const AblationCell& cell, const AblationClaims& claims) {
   CellSummary summary;
   std::vector<double> position_m;
   std::vector<double> orientation_deg;
@@ -67,15 +65,15 @@ CellSummary SummarizeCell(const AblationCell& cell, bool consistency,
   summary.orientation_deg = Summarize(orientation_deg);
   summary.frame_ms = Summarize(frame_ms);
   std::vector<double> further_p_values;
-  if (consistency) {
-    for (const BlockConsistency& block : SummarizeRuns(cell.runs, kSettleSeconds).blocks) {
+  if (claims.consistency) {
+    for (const BlockConsistency& block : SummarizeRuns(cell.runs, claims.nees_settle_s).blocks) {
       if (block.block != NeesBlock::kPose) continue;
       summary.pose = block;
       further_p_values.push_back(block.p_value);
     }
   }
   summary.calibration =
-      SummarizeCalibrationOfRuns(cell.runs, predicted_sigma(cell), further_p_values);
+      SummarizeCalibrationOfRuns(cell.runs, claims.predicted_sigma(cell), further_p_values);
   return summary;
 }
 
@@ -89,18 +87,17 @@ nlohmann::ordered_json Spread(const ErrorSummary& errors) {
 
 }  // namespace
 
-std::string AblationText(const std::vector<AblationCell>& cells, bool consistency,
-                         const PredictedSigma& predicted_sigma) {
+std::string AblationText(const std::vector<AblationCell>& cells, const AblationClaims& claims) {
   std::vector<std::string> header = {
       "estimated",  "runs",          "failed",    "ATE [m]",
       "p95 [m]",    "ATE [deg]",     "p95 [deg]", "least covered [s]",
       "frame [ms]", "off > 3 sigma", "by chance"};
-  if (consistency) header.emplace_back("pose NEES (6)");
+  if (claims.consistency) header.emplace_back("pose NEES (6)");
   TextTable table(header);
   std::string details;
   const std::string* estimator = nullptr;
   for (const AblationCell& cell : cells) {
-    const CellSummary summary = SummarizeCell(cell, consistency, predicted_sigma);
+    const CellSummary summary = SummarizeCell(cell, claims);
     if (estimator == nullptr || *estimator != cell.estimator) table.AddSection(cell.estimator);
     estimator = &cell.estimator;
     std::vector<std::string> row = {
@@ -115,7 +112,7 @@ std::string AblationText(const std::vector<AblationCell>& cells, bool consistenc
         Number(summary.frame_ms.median, 2),
         std::to_string(summary.outside_at_end) + " of " + std::to_string(summary.numbers_at_end),
         Number(summary.chance_of_outside, 3)};
-    if (consistency) row.push_back(summary.pose ? Number(summary.pose->mean, 2) : "-");
+    if (claims.consistency) row.push_back(summary.pose ? Number(summary.pose->mean, 2) : "-");
     table.AddRow(row);
     if (!summary.calibration.empty()) {
       details += "\n" + cell.estimator + ", estimated: " + cell.variant.name + "\n" +
@@ -125,11 +122,11 @@ std::string AblationText(const std::vector<AblationCell>& cells, bool consistenc
   return table.Text() + details;
 }
 
-nlohmann::ordered_json AblationJson(const std::vector<AblationCell>& cells, bool consistency,
-                                    const PredictedSigma& predicted_sigma) {
+nlohmann::ordered_json AblationJson(const std::vector<AblationCell>& cells,
+                                    const AblationClaims& claims) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const AblationCell& cell : cells) {
-    const CellSummary summary = SummarizeCell(cell, consistency, predicted_sigma);
+    const CellSummary summary = SummarizeCell(cell, claims);
     nlohmann::ordered_json entry = {{"estimator", cell.estimator},
                                     {"variant", cell.variant.name},
                                     {"estimated", cell.variant.estimated},
@@ -178,8 +175,8 @@ std::string AblationRunsCsv(const std::vector<AblationCell>& cells) {
       text += cell.estimator + "," + cell.variant.name + "," + std::to_string(run.seed) + "," +
               (run.failed ? "1" : "0");
       for (const double value : {run.coverage_s, run.ate_position_m, run.ate_orientation_deg,
-                                 run.calibration.Nees().value_or(0.0)}) {
-        text += "," + FormatNumber(value);
+                                 run.calibration.Nees().value_or(std::nan(""))}) {
+        text += "," + (std::isfinite(value) ? FormatNumber(value) : "");
       }
       text += "," + std::to_string(run.calibration.layout().size());
       text += "," + FormatNumber(run.frame_ms_median) + "," + FormatNumber(run.frame_ms_p99) + "\n";

@@ -10,6 +10,7 @@
 #include "common/geometry/so3.h"
 #include "common/measurement/gauge.h"
 #include "common/measurement/told_errors.h"
+#include "common/support/numeric_text.h"
 #include "common/support/stage_timer.h"
 #include "evaluation/errors.h"
 #include "evaluation/statistics.h"
@@ -45,10 +46,15 @@ class RunStatistics {
 
   void Finish() {
     collector_.Finish();
+    if (!run_.failed && pairs_.size() < 3) {
+      run_.failed = true;
+      run_.reason = "fewer than three of its states come " + FormatNumber(settle_s_) +
+                    " s after the first or later (evaluation.nees_settle_s)";
+    }
     run_.nees.start = collector_.first_frame();
     run_.nees.failed = run_.failed;
+    if (run_.failed) return;
     const double count = static_cast<double>(pairs_.size());
-    if (pairs_.empty()) return;
     const auto rms = [&](int block) {
       return std::sqrt(squares_.segment<3>(3 * block).sum() / count);
     };

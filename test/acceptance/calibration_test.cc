@@ -56,6 +56,28 @@ TEST(AblateTest, ComparesSubsetsWithTheSameBytesForAnyNumberOfJobs) {
   EXPECT_EQ(ReadFile(folder / "one/calibration.csv"), ReadFile(folder / "again/calibration.csv"));
 }
 
+// Shorter than the time before errors count: no error, and not one of 0. The setting is heeded.
+TEST(AblateTest, NoDataIsNoErrorOfZero) {
+  TemporaryFolder folder;
+  const auto ablate = [&](const std::string& out, const std::string& settle_s) {
+    return RunDuet(Ablate(folder / out,
+                          {"--set", "simulation.duration_s=1", "--set",
+                           "evaluation.nees_settle_s=" + settle_s, "--backends", "msckf"},
+                          "t_d", "1..1"));
+  };
+  const ProgramResult none = ablate("none", "2");
+  ASSERT_EQ(none.status, 0) << none.err;
+  EXPECT_THAT(none.out, HasSubstr("fewer than three of its states come 2 s after the first"));
+  EXPECT_THAT(ReadFile(folder / "none/runs.csv"), HasSubstr("msckf,none,1,1,1,,,,0,"));
+  const ProgramResult all = ablate("all", "0");
+  ASSERT_EQ(all.status, 0) << all.err;
+  for (const auto& cell : nlohmann::json::parse(ReadFile(folder / "all/ablation.json"))) {
+    EXPECT_EQ(cell["failed"], 0);
+    EXPECT_GT(cell["ate_position_m"]["median"], 0.0);
+    EXPECT_GT(cell["pose_nees"]["mean"], 0.0);
+  }
+}
+
 // The IMU is too slow for shared.max_imu_gap_s: no frame gives a state.
 TEST(AblateTest, RunsWithoutAStateAreFailedRunsAndNoCrash) {
   TemporaryFolder folder;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 
 #include "backends/factory.h"
 
@@ -108,6 +109,31 @@ TEST(RunOnce, FailsWithAReasonWhereNoFrameGivesAState) {
     EXPECT_EQ(run.coverage_s, 0.0) << name;
     EXPECT_GT(run.dead_reckoned, 5) << name;
   }
+}
+
+// The errors count from the settling time on; without a state after it there is no error, not one
+// of 0.
+TEST(RunOnce, HasNoErrorWithoutStatesToTakeItOver) {
+  MonteCarloOptions options;
+  options.simulation = SimulationPreset("excited");
+  options.simulation.duration_s = 1.0;
+  options.simulation.max_tracks = 40;
+  const auto run = [&](double settle_s) {
+    options.settle_s = settle_s;
+    return RunOnce(options, 1,
+                   [&](const EstimatorSetup& setup) { return MakeEstimator("msckf", setup, {}); });
+  };
+  const MonteCarloRun none = run(2.0);
+  EXPECT_TRUE(none.failed);
+  EXPECT_THAT(none.reason, testing::HasSubstr("come 2 s after the first or later"));
+  EXPECT_TRUE(std::isnan(none.ate_position_m));
+  EXPECT_TRUE(std::isnan(none.position_rms_m));
+  const MonteCarloRun late = run(0.5);
+  const MonteCarloRun all = run(0.0);
+  EXPECT_FALSE(all.failed) << all.reason;
+  EXPECT_GT(all.ate_position_m, 0.0);
+  EXPECT_GT(late.ate_position_m, 0.0);
+  EXPECT_NE(late.ate_position_m, all.ate_position_m);
 }
 
 TEST(OutputCollector, TakesEachStateOnce) {
