@@ -21,9 +21,13 @@ struct CellSummary {
   ErrorSummary orientation_deg;
   ErrorSummary frame_ms;
   double coverage_s = 0.0;  ///< the smallest
-  /// Of all numbers, instants and runs: how often the estimate is further than kPriorSigmas of its
-  /// prior from the told value. Told errors drawn from the prior make it 0.0027 at most.
-  double outside_prior = 0.0;
+  /// Of all runs, failed ones too.
+  int frames = 0;
+  int dead_reckoned = 0;
+  /// Of all numbers, instants and runs, failed ones too: how often the estimate is further than
+  /// kPriorSigmas of its prior from the told value. Told errors drawn from the prior make it 0.0027
+  /// at most. NaN where nothing was estimated.
+  double outside_prior = std::nan("");
   /// The same at the end of each run, failed ones too: how many of the numbers of all runs, and the
   /// probability of as many or more where an estimate is as far off as its told value was drawn.
   int outside_at_end = 0;
@@ -39,11 +43,18 @@ CellSummary SummarizeCell(const AblationCell& cell, const AblationClaims& claims
   std::vector<double> orientation_deg;
   std::vector<double> frame_ms;
   bool first = true;
+  double outside_samples = 0.0;
+  double samples = 0.0;
   for (const MonteCarloRun& run : cell.runs) {
     frame_ms.push_back(run.frame_ms_median);
     summary.coverage_s = first ? run.coverage_s : std::min(summary.coverage_s, run.coverage_s);
     first = false;
+    summary.frames += run.frames;
+    summary.dead_reckoned += run.dead_reckoned;
     if (!run.calibration.empty()) {
+      const auto of_run = static_cast<double>(run.calibration.samples().size());
+      samples += of_run;
+      outside_samples += of_run * run.calibration.ShareOutsidePrior(run.told_rig, kPriorSigmas);
       summary.outside_at_end += run.calibration.CountOutsidePriorAtEnd(run.told_rig, kPriorSigmas);
       summary.numbers_at_end += run.calibration.layout().size();
     }
@@ -51,12 +62,11 @@ CellSummary SummarizeCell(const AblationCell& cell, const AblationClaims& claims
       ++summary.failed;
       continue;
     }
-    summary.outside_prior += run.calibration.ShareOutsidePrior(run.told_rig, kPriorSigmas) /
-                             static_cast<double>(cell.runs.size());
     if (!std::isfinite(run.ate_position_m)) continue;  // a truth that stands still
     position_m.push_back(run.ate_position_m);
     orientation_deg.push_back(run.ate_orientation_deg);
   }
+  if (samples > 0.0) summary.outside_prior = outside_samples / samples;
   if (summary.numbers_at_end > 0) {
     summary.chance_of_outside =
         BinomialUpperTail(summary.outside_at_end, summary.numbers_at_end, kOutsidePriorByChance);
@@ -77,6 +87,10 @@ CellSummary SummarizeCell(const AblationCell& cell, const AblationClaims& claims
   return summary;
 }
 
+std::string CountOf(int count, int of) {
+  return of == 0 ? "-" : std::to_string(count) + " of " + std::to_string(of);
+}
+
 nlohmann::ordered_json Spread(const ErrorSummary& errors) {
   return {{"median", errors.median},
           {"p25", errors.p25},
@@ -89,9 +103,9 @@ nlohmann::ordered_json Spread(const ErrorSummary& errors) {
 
 std::string AblationText(const std::vector<AblationCell>& cells, const AblationClaims& claims) {
   std::vector<std::string> header = {
-      "estimated",  "runs",          "failed",    "ATE [m]",
-      "p95 [m]",    "ATE [deg]",     "p95 [deg]", "least covered [s]",
-      "frame [ms]", "off > 3 sigma", "by chance"};
+      "estimated",     "runs",       "failed",        "ATE [m]",
+      "p95 [m]",       "ATE [deg]",  "p95 [deg]",     "least covered [s]",
+      "dead reckoned", "frame [ms]", "off > 3 sigma", "by chance"};
   if (claims.consistency) header.emplace_back("pose NEES (6)");
   TextTable table(header);
   std::string details;
@@ -109,9 +123,10 @@ std::string AblationText(const std::vector<AblationCell>& cells, const AblationC
         Number(summary.orientation_deg.median, 3),
         Number(summary.orientation_deg.p95, 3),
         Number(summary.coverage_s, 1),
+        CountOf(summary.dead_reckoned, summary.frames),
         Number(summary.frame_ms.median, 2),
-        std::to_string(summary.outside_at_end) + " of " + std::to_string(summary.numbers_at_end),
-        Number(summary.chance_of_outside, 3)};
+        CountOf(summary.outside_at_end, summary.numbers_at_end),
+        summary.numbers_at_end > 0 ? Number(summary.chance_of_outside, 3) : "-"};
     if (claims.consistency) row.push_back(summary.pose ? Number(summary.pose->mean, 2) : "-");
     table.AddRow(row);
     if (!summary.calibration.empty()) {
@@ -127,20 +142,22 @@ nlohmann::ordered_json AblationJson(const std::vector<AblationCell>& cells,
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const AblationCell& cell : cells) {
     const CellSummary summary = SummarizeCell(cell, claims);
-    nlohmann::ordered_json entry = {{"estimator", cell.estimator},
-                                    {"variant", cell.variant.name},
-                                    {"estimated", cell.variant.estimated},
-                                    {"runs", cell.runs.size()},
-                                    {"failed", summary.failed},
-                                    {"ate_position_m", Spread(summary.position_m)},
-                                    {"ate_orientation_deg", Spread(summary.orientation_deg)},
-                                    {"least_coverage_s", summary.coverage_s},
-                                    {"frame_ms", Spread(summary.frame_ms)},
-                                    {"outside_3_prior_sigmas", summary.outside_prior},
-                                    {"outside_3_prior_sigmas_at_end",
-                                     {{"count", summary.outside_at_end},
-                                      {"of", summary.numbers_at_end},
-                                      {"by_chance", summary.chance_of_outside}}}};
+    nlohmann::ordered_json entry = {
+        {"estimator", cell.estimator},
+        {"variant", cell.variant.name},
+        {"estimated", cell.variant.estimated},
+        {"runs", cell.runs.size()},
+        {"failed", summary.failed},
+        {"ate_position_m", Spread(summary.position_m)},
+        {"ate_orientation_deg", Spread(summary.orientation_deg)},
+        {"least_coverage_s", summary.coverage_s},
+        {"dead_reckoned", {{"frames", summary.dead_reckoned}, {"of", summary.frames}}},
+        {"frame_ms", Spread(summary.frame_ms)},
+        {"outside_3_prior_sigmas", summary.outside_prior},
+        {"outside_3_prior_sigmas_at_end",
+         {{"count", summary.outside_at_end},
+          {"of", summary.numbers_at_end},
+          {"by_chance", summary.chance_of_outside}}}};
     if (summary.pose) {
       entry["pose_nees"] = {{"mean", summary.pose->mean},
                             {"median_instant", summary.pose->median_instant},
@@ -168,13 +185,15 @@ nlohmann::ordered_json AblationJson(const std::vector<AblationCell>& cells,
 
 std::string AblationRunsCsv(const std::vector<AblationCell>& cells) {
   std::string text =
-      "#estimator,estimated,seed,failed,coverage [s],ate position [m],ate orientation [deg],"
+      "#estimator,estimated,seed,failed,coverage [s],frames,dead reckoned,ate position [m],ate "
+      "orientation [deg],"
       "calibration nees,calibration size,frame median [ms],frame p99 [ms]\n";
   for (const AblationCell& cell : cells) {
     for (const MonteCarloRun& run : cell.runs) {
       text += cell.estimator + "," + cell.variant.name + "," + std::to_string(run.seed) + "," +
-              (run.failed ? "1" : "0");
-      for (const double value : {run.coverage_s, run.ate_position_m, run.ate_orientation_deg,
+              (run.failed ? "1" : "0") + "," + FormatNumber(run.coverage_s) + "," +
+              std::to_string(run.frames) + "," + std::to_string(run.dead_reckoned);
+      for (const double value : {run.ate_position_m, run.ate_orientation_deg,
                                  run.calibration.Nees().value_or(std::nan(""))}) {
         text += "," + (std::isfinite(value) ? FormatNumber(value) : "");
       }

@@ -68,7 +68,7 @@ TEST(AblateTest, NoDataIsNoErrorOfZero) {
   const ProgramResult none = ablate("none", "2");
   ASSERT_EQ(none.status, 0) << none.err;
   EXPECT_THAT(none.out, HasSubstr("fewer than three of its states come 2 s after the first"));
-  EXPECT_THAT(ReadFile(folder / "none/runs.csv"), HasSubstr("msckf,none,1,1,1,,,,0,"));
+  EXPECT_THAT(ReadFile(folder / "none/runs.csv"), HasSubstr("msckf,none,1,1,1,21,0,,,,0,"));
   const ProgramResult all = ablate("all", "0");
   ASSERT_EQ(all.status, 0) << all.err;
   for (const auto& cell : nlohmann::json::parse(ReadFile(folder / "all/ablation.json"))) {
@@ -90,6 +90,8 @@ TEST(AblateTest, RunsWithoutAStateAreFailedRunsAndNoCrash) {
   for (const auto& cell : cells) {
     EXPECT_EQ(cell["failed"], 1);
     EXPECT_TRUE(cell["ate_position_m"]["median"].is_null());
+    EXPECT_TRUE(cell["outside_3_prior_sigmas"].is_null());
+    EXPECT_GT(cell["dead_reckoned"]["frames"], 0);
   }
   const ProgramResult made =
       RunDuet({"simulate", "--preset", "excited", "--set", "duration_s=3", "--set", "max_tracks=40",

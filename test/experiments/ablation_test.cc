@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "backends/factory.h"
+#include "experiments/ablation/ablation_report.h"
 
 namespace duet {
 namespace {
@@ -90,6 +91,45 @@ TEST(Ablation, StopsWhereItIsInterrupted) {
       [](int done) { return done < 3; });
   EXPECT_TRUE(cells.empty());
   EXPECT_EQ(runs, 3);
+}
+
+// One run of t_d alone that was told 0, ends after `frames` frames and reports `t_d_s` all the
+// time.
+MonteCarloRun RunOfTimeOffset(double t_d_s, int frames, bool failed) {
+  CalibrationPriors priors;
+  priors.t_d.estimated = true;
+  priors.t_d.sigma = 0.01;
+  MonteCarloRun run;
+  run.calibration = CalibrationErrors(CalibrationLayout(priors, {}), {});
+  RigCalibration estimate;
+  estimate.t_d_s = t_d_s;
+  for (int i = 0; i < frames; ++i) {
+    run.calibration.Add(i, estimate, Eigen::Matrix<double, 1, 1>::Constant(1e-6));
+  }
+  run.frames = frames;
+  run.dead_reckoned = 1;
+  run.failed = failed;
+  run.ate_position_m = run.ate_orientation_deg = failed ? std::nan("") : 0.1;
+  return run;
+}
+
+// A run that leaves its prior, then fails, is no run that stayed within it.
+TEST(AblationReport, CountsFailedRunsWhereTheyLeftTheirPrior) {
+  const AblationCell cell{
+      .estimator = "msckf",
+      .variant = {.name = "t_d", .estimated = {"t_d"}},
+      .runs = {RunOfTimeOffset(0.001, 9, false), RunOfTimeOffset(0.05, 3, true)}};
+  const AblationClaims claims{
+      .predicted_sigma = [](const AblationCell&) { return Eigen::VectorXd(); }};
+  const auto json = AblationJson({cell}, claims).front();
+  EXPECT_EQ(json["failed"], 1);
+  EXPECT_NEAR(json["outside_3_prior_sigmas"], 3.0 / 12.0, 1e-12);
+  EXPECT_EQ(json["outside_3_prior_sigmas_at_end"]["count"], 1);
+  EXPECT_EQ(json["dead_reckoned"]["frames"], 2);
+  EXPECT_EQ(json["dead_reckoned"]["of"], 12);
+  EXPECT_NEAR(json["ate_position_m"]["max"], 0.1, 1e-12);
+  EXPECT_THAT(AblationText({cell}, claims), testing::HasSubstr(" 2 of 12 "));
+  EXPECT_THAT(AblationRunsCsv({cell}), testing::HasSubstr("\nmsckf,t_d,0,1,0,3,1,,,"));
 }
 
 // A gap between IMU samples that is longer than shared.max_imu_gap_s, everywhere: no frame is used.
