@@ -247,7 +247,7 @@ int RunAblate(const CommandLine& line) {
   WriteTextFile(record.path() / "ablation.txt", text);
   WriteTextFile(record.path() / "ablation.json", AblationJson(cells, claims).dump(2) + "\n");
   WriteTextFile(record.path() / "perturbation.yaml", PerturbationYaml(ablation.plan.priors));
-  WriteTextFile(record.path() / "runs.csv", AblationRunsCsv(cells));
+  WriteTextFile(record.path() / "runs.csv", AblationRunsCsv(cells, claims));
   WriteTextFile(record.path() / "calibration.csv", AblationCurvesCsv(cells));
   // config.yaml says what the states were before the design switched them.
   record.manifest()["states"] = FLAGS_states;
@@ -284,8 +284,9 @@ Command AblateCommand() {
           "(shared.calibration.*.sigma) with the run's seed. Prints accuracy, consistency "
           "(simulation only), cost, and the calibration's errors at the end beside what was "
           "reported; writes ablation.json, runs.csv and calibration.csv (the data of the "
-          "convergence curves: error and sigma of every component over time). On a recording its "
-          "own calibration is taken as the true one. --set takes the keys of duet config and, "
+          "convergence curves: error and sigma of every component over time). On a recording "
+          "estimates are compared with its own calibration, which is no truth. --set takes the "
+          "keys of duet config and, "
           "with --simulate, of simulation (duet simulate).",
       .example =
           "duet ablate --simulate excited --states t_d,p_CB,intrinsics --seeds 1..10 --out "

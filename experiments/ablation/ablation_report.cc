@@ -1,6 +1,8 @@
 #include "experiments/ablation/ablation_report.h"
 
 #include <cmath>
+#include <cstdio>
+#include <optional>
 
 #include "common/support/numeric_text.h"
 #include "evaluation/proportion.h"
@@ -10,6 +12,8 @@
 namespace duet {
 namespace {
 
+/// SummarizeCalibration's name of all blocks together.
+constexpr const char* kWholeCalibration = "calibration";
 constexpr double kPriorSigmas = 3.0;
 /// How often a told error that is drawn from its prior is larger than that.
 constexpr double kOutsidePriorByChance = 0.0026998;
@@ -87,6 +91,12 @@ CellSummary SummarizeCell(const AblationCell& cell, const AblationClaims& claims
   return summary;
 }
 
+std::string Scientific(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.2e", value);
+  return text;
+}
+
 std::string CountOf(int count, int of) {
   return of == 0 ? "-" : std::to_string(count) + " of " + std::to_string(of);
 }
@@ -97,6 +107,44 @@ nlohmann::ordered_json Spread(const ErrorSummary& errors) {
           {"p75", errors.p75},
           {"p95", errors.p95},
           {"max", errors.max}};
+}
+
+// Of a recording: without what only a known truth allows to say.
+std::string OwnCalibrationText(const std::vector<CalibrationBlockSummary>& blocks) {
+  TextTable table({"calibration, against the recording's own", "runs", "prior", "difference rms",
+                   "reported", "settled [s]"});
+  for (const CalibrationBlockSummary& block : blocks) {
+    if (block.name == kWholeCalibration) continue;  // units differ
+    table.AddRow({block.name, std::to_string(block.runs), Scientific(block.prior_sigma),
+                  Scientific(block.rms_error), Scientific(block.rms_sigma),
+                  Number(block.convergence_s, 1)});
+  }
+  return table.Text();
+}
+
+nlohmann::ordered_json OwnCalibrationJson(const CalibrationBlockSummary& block) {
+  nlohmann::ordered_json json = {{"runs", block.runs},
+                                 {"prior_sigma", block.prior_sigma},
+                                 {"rms_difference", block.rms_error},
+                                 {"rms_reported_sigma", block.rms_sigma}};
+  if (std::isfinite(block.convergence_s)) json["settled_s"] = block.convergence_s;
+  return json;
+}
+
+nlohmann::ordered_json CalibrationJson(const CalibrationBlockSummary& block) {
+  nlohmann::ordered_json json = {{"runs", block.runs},
+                                 {"dof", block.dof},
+                                 {"prior_sigma", block.prior_sigma},
+                                 {"rms_error", block.rms_error},
+                                 {"rms_reported_sigma", block.rms_sigma},
+                                 {"error_over_reported", block.error_over_sigma}};
+  if (block.error_over_predicted) json["error_over_predicted"] = *block.error_over_predicted;
+  json["mean_nees"] = block.mean_nees;
+  json["band_99"] = {block.band.low, block.band.high};
+  json["p_value"] = block.p_value;
+  json["rejected"] = block.rejected;
+  if (std::isfinite(block.convergence_s)) json["settled_s"] = block.convergence_s;
+  return json;
 }
 
 }  // namespace
@@ -131,7 +179,8 @@ std::string AblationText(const std::vector<AblationCell>& cells, const AblationC
     table.AddRow(row);
     if (!summary.calibration.empty()) {
       details += "\n" + cell.estimator + ", estimated: " + cell.variant.name + "\n" +
-                 CalibrationText(summary.calibration);
+                 (claims.consistency ? CalibrationText(summary.calibration)
+                                     : OwnCalibrationText(summary.calibration));
     }
   }
   return table.Text() + details;
@@ -164,26 +213,18 @@ nlohmann::ordered_json AblationJson(const std::vector<AblationCell>& cells,
                             {"rejected", summary.pose->rejected}};
     }
     for (const CalibrationBlockSummary& block : summary.calibration) {
-      nlohmann::ordered_json row = {{"runs", block.runs},
-                                    {"dof", block.dof},
-                                    {"prior_sigma", block.prior_sigma},
-                                    {"rms_error", block.rms_error},
-                                    {"rms_reported_sigma", block.rms_sigma},
-                                    {"error_over_reported", block.error_over_sigma}};
-      if (block.error_over_predicted) row["error_over_predicted"] = *block.error_over_predicted;
-      row["mean_nees"] = block.mean_nees;
-      row["band_99"] = {block.band.low, block.band.high};
-      row["p_value"] = block.p_value;
-      row["rejected"] = block.rejected;
-      if (std::isfinite(block.convergence_s)) row["settled_s"] = block.convergence_s;
-      entry["calibration"][block.name] = row;
+      if (claims.consistency) {
+        entry["calibration"][block.name] = CalibrationJson(block);
+      } else if (block.name != kWholeCalibration) {
+        entry["against_own_calibration"][block.name] = OwnCalibrationJson(block);
+      }
     }
     json.push_back(entry);
   }
   return json;
 }
 
-std::string AblationRunsCsv(const std::vector<AblationCell>& cells) {
+std::string AblationRunsCsv(const std::vector<AblationCell>& cells, const AblationClaims& claims) {
   std::string text =
       "#estimator,estimated,seed,failed,coverage [s],frames,dead reckoned,ate position [m],ate "
       "orientation [deg],"
@@ -193,8 +234,10 @@ std::string AblationRunsCsv(const std::vector<AblationCell>& cells) {
       text += cell.estimator + "," + cell.variant.name + "," + std::to_string(run.seed) + "," +
               (run.failed ? "1" : "0") + "," + FormatNumber(run.coverage_s) + "," +
               std::to_string(run.frames) + "," + std::to_string(run.dead_reckoned);
-      for (const double value : {run.ate_position_m, run.ate_orientation_deg,
-                                 run.calibration.Nees().value_or(std::nan(""))}) {
+      const std::optional<double> nees =
+          claims.consistency ? run.calibration.Nees() : std::optional<double>();
+      for (const double value :
+           {run.ate_position_m, run.ate_orientation_deg, nees.value_or(std::nan(""))}) {
         text += "," + (std::isfinite(value) ? FormatNumber(value) : "");
       }
       text += "," + std::to_string(run.calibration.layout().size());

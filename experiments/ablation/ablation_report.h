@@ -10,7 +10,8 @@ namespace duet {
 
 /// What the tables say besides accuracy and cost.
 struct AblationClaims {
-  /// NEES of the pose: of simulations only (DESIGN.md section 5).
+  /// NEES, its bands and verdicts, of pose and calibration: of simulations only (DESIGN.md section
+  /// 5). A recording's calibration is compared with the recording's own, and nothing is claimed.
   bool consistency = false;
   double nees_settle_s = 2.0;  ///< it counts from this long after a run's first state
   /// What the motion allows this estimator's cell at the end, over its calibration's components;
@@ -27,7 +28,8 @@ struct AblationClaims {
                                                   const AblationClaims& claims);
 
 /// One row a run, header included (docs/formats.md: runs.csv).
-[[nodiscard]] std::string AblationRunsCsv(const std::vector<AblationCell>& cells);
+[[nodiscard]] std::string AblationRunsCsv(const std::vector<AblationCell>& cells,
+                                          const AblationClaims& claims);
 /// The data behind the convergence curves: one row a run, sample and component (calibration.csv).
 [[nodiscard]] std::string AblationCurvesCsv(const std::vector<AblationCell>& cells);
 

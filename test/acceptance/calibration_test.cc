@@ -102,6 +102,7 @@ TEST(AblateTest, RunsWithoutAStateAreFailedRunsAndNoCrash) {
        "--seeds", "1..1", "--set", "shared.max_imu_gap_s=0.001", "--out", folder / "recorded"});
   ASSERT_EQ(recorded.status, 0) << recorded.err;
   EXPECT_THAT(recorded.out, HasSubstr("failed: window, t_d, seed 1 after 0.0 s: "));
+  EXPECT_THAT(recorded.out, testing::Not(HasSubstr("NEES")));
 }
 
 TEST(AblateTest, BadInputIsOneClearLine) {

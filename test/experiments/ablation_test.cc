@@ -16,6 +16,8 @@ namespace duet {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
 
 std::vector<std::string> Names(const std::vector<AblationVariant>& variants) {
   std::vector<std::string> names;
@@ -113,6 +115,11 @@ MonteCarloRun RunOfTimeOffset(double t_d_s, int frames, bool failed) {
   return run;
 }
 
+AblationClaims Claims(bool consistency) {
+  return {.consistency = consistency,
+          .predicted_sigma = [](const AblationCell&) { return Eigen::VectorXd(); }};
+}
+
 // A run that leaves its prior, then fails, is no run that stayed within it.
 TEST(AblationReport, CountsFailedRunsWhereTheyLeftTheirPrior) {
   const AblationCell cell{
@@ -128,8 +135,29 @@ TEST(AblationReport, CountsFailedRunsWhereTheyLeftTheirPrior) {
   EXPECT_EQ(json["dead_reckoned"]["frames"], 2);
   EXPECT_EQ(json["dead_reckoned"]["of"], 12);
   EXPECT_NEAR(json["ate_position_m"]["max"], 0.1, 1e-12);
-  EXPECT_THAT(AblationText({cell}, claims), testing::HasSubstr(" 2 of 12 "));
-  EXPECT_THAT(AblationRunsCsv({cell}), testing::HasSubstr("\nmsckf,t_d,0,1,0,3,1,,,"));
+  EXPECT_THAT(AblationText({cell}, claims), HasSubstr(" 2 of 12 "));
+  EXPECT_THAT(AblationRunsCsv({cell}, claims), HasSubstr("\nmsckf,t_d,0,1,0,3,1,,,"));
+}
+
+// A recording's own calibration is no truth: what is said of it claims no consistency.
+TEST(AblationReport, ClaimsNoConsistencyOfARecording) {
+  const std::vector<AblationCell> cells = {{.estimator = "msckf",
+                                            .variant = {.name = "t_d", .estimated = {"t_d"}},
+                                            .runs = {RunOfTimeOffset(0.05, 9, false)}}};
+  for (const char* word : {"NEES", "onsistent", "INCONSISTENT", "band"}) {
+    EXPECT_THAT(AblationText(cells, Claims(false)), Not(HasSubstr(word)));
+  }
+  EXPECT_THAT(AblationText(cells, Claims(false)), HasSubstr("against the recording's own"));
+  EXPECT_THAT(AblationText(cells, Claims(true)), HasSubstr("INCONSISTENT"));
+  const auto recorded = AblationJson(cells, Claims(false)).front();
+  for (const char* key : {"nees", "band", "p_value", "rejected", "true", "rms_error"}) {
+    EXPECT_THAT(recorded.dump(), Not(HasSubstr(key)));
+  }
+  EXPECT_NEAR(recorded["against_own_calibration"]["t_d"]["rms_difference"], 0.05, 1e-12);
+  const auto simulated = AblationJson(cells, Claims(true)).front();
+  EXPECT_NEAR(simulated["calibration"]["t_d"]["mean_nees"], 2500.0, 1e-6);
+  EXPECT_THAT(AblationRunsCsv(cells, Claims(false)), HasSubstr(",0.1,0.1,,1,"));
+  EXPECT_THAT(AblationRunsCsv(cells, Claims(true)), Not(HasSubstr(",0.1,0.1,,1,")));
 }
 
 // A gap between IMU samples that is longer than shared.max_imu_gap_s, everywhere: no frame is used.
@@ -143,8 +171,8 @@ TEST(RunOnce, FailsWithAReasonWhereNoFrameGivesAState) {
     const MonteCarloRun run = RunOnce(
         options, 1, [&](const EstimatorSetup& setup) { return MakeEstimator(name, setup, {}); });
     EXPECT_TRUE(run.failed) << name;
-    EXPECT_THAT(run.reason, testing::HasSubstr("has no state: ")) << name;
-    EXPECT_THAT(run.reason, testing::HasSubstr("the IMU")) << name;
+    EXPECT_THAT(run.reason, HasSubstr("has no state: ")) << name;
+    EXPECT_THAT(run.reason, HasSubstr("the IMU")) << name;
     EXPECT_TRUE(run.nees.samples.empty()) << name;
     EXPECT_EQ(run.coverage_s, 0.0) << name;
     EXPECT_GT(run.dead_reckoned, 5) << name;
@@ -165,7 +193,7 @@ TEST(RunOnce, HasNoErrorWithoutStatesToTakeItOver) {
   };
   const MonteCarloRun none = run(2.0);
   EXPECT_TRUE(none.failed);
-  EXPECT_THAT(none.reason, testing::HasSubstr("come 2 s after the first or later"));
+  EXPECT_THAT(none.reason, HasSubstr("come 2 s after the first or later"));
   EXPECT_TRUE(std::isnan(none.ate_position_m));
   EXPECT_TRUE(std::isnan(none.position_rms_m));
   const MonteCarloRun late = run(0.5);
