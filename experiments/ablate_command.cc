@@ -5,6 +5,7 @@
 #include <map>
 
 #include "common/measurement/gauge.h"
+#include "common/measurement/told_checks.h"
 #include "common/measurement/told_errors.h"
 #include "common/support/input_error.h"
 #include "common/support/logging.h"
@@ -72,9 +73,22 @@ AblationDesign ParseDesign() {
   return AblationDesign::kOneAtATime;
 }
 
+// The perturbation in force as a file that --perturb takes.
+std::string PerturbationYaml(const CalibrationPriors& priors) {
+  ConfigSources sources;
+  ToldErrors errors = priors.told_errors;
+  ToldOffset offset = priors.told_offset;
+  sources.Read("told_errors", &errors);
+  sources.Read("told_offset", &offset);
+  return sources.ResolvedYaml();
+}
+
 void ReadPerturbation(const std::vector<std::string>& states, CalibrationPriors* priors) {
-  priors->told_errors = {};
-  priors->told_offset = {};
+  if (PerturbationYaml(*priors) != PerturbationYaml({})) {
+    throw InputError(
+        "shared.calibration.told_errors, told_offset: have no effect in duet ablate; expected "
+        "--perturb FILE");
+  }
   if (FLAGS_perturb.empty()) {
     priors->told_errors = PriorErrorsOf(states, *priors);
     return;
@@ -176,6 +190,15 @@ Eigen::VectorXd PredictSigma(const Ablation& ablation, const AblationCell& cell)
   return predicted.CalibrationCovariance().diagonal().cwiseSqrt();
 }
 
+// Of every seed.
+void CheckToldOf(const AblationPlan& plan, const RigCalibration& rig) {
+  CalibrationPriors priors = plan.priors;
+  for (int seed = plan.first_seed; seed <= plan.last_seed; ++seed) {
+    priors.told_errors_seed = seed;
+    CheckTold(ToldRig(rig, priors), priors);
+  }
+}
+
 void RunOnRecording(const CommandLine& line, Ablation* ablation) {
   Session& session = ablation->session;
   session = OpenSession(line, FLAGS_dataset, FLAGS_tracks);
@@ -184,6 +207,7 @@ void RunOnRecording(const CommandLine& line, Ablation* ablation) {
                      ": has no ground truth; an ablation measures against it");
   }
   ablation->plan = ReadPlan(session.configuration.shared);
+  CheckToldOf(ablation->plan, session.recording.rig);  // before the images are tracked
   const std::vector<TrackFrameSet> frames = TracksOf(session, FLAGS_quiet);
   if (frames.empty()) return;
   ablation->tracks_sha256 = HashTrackStream(frames);
@@ -192,16 +216,6 @@ void RunOnRecording(const CommandLine& line, Ablation* ablation) {
                               priors.told_errors_seed = seed;
                               return RunRecorded(session, frames, estimator, priors);
                             });
-}
-
-// The perturbation in force as a file that --perturb takes.
-std::string PerturbationYaml(const CalibrationPriors& priors) {
-  ConfigSources sources;
-  ToldErrors errors = priors.told_errors;
-  ToldOffset offset = priors.told_offset;
-  sources.Read("told_errors", &errors);
-  sources.Read("told_offset", &offset);
-  return sources.ResolvedYaml();
 }
 
 void CheckFlags(const CommandLine& line) {

@@ -9,6 +9,7 @@
 #include "common/geometry/angle.h"
 #include "common/geometry/so3.h"
 #include "common/measurement/gauge.h"
+#include "common/measurement/told_checks.h"
 #include "common/measurement/told_errors.h"
 #include "common/support/numeric_text.h"
 #include "common/support/stage_timer.h"
@@ -151,23 +152,31 @@ MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,
   simulation.told_cameras = priors.cameras;
   SimulatedRecording recording = Simulate(simulation);
   recording.told_rig = AddToldOffset(recording.told_rig, priors.told_offset);
+  CheckTold(recording.told_rig, priors);
   SharedOptions shared = options.shared;
   shared.calibration = ScaledPriors(shared.calibration, simulation.noise_scale);
   IncludeTold(recording.told_rig, &shared);
   const EstimatorSetup setup = MakeSetup(recording, shared);
   const std::unique_ptr<Estimator> estimator = make_estimator(setup);
 
+  MonteCarloRun run;
+  run.seed = seed;
+  run.told_rig = recording.told_rig;
   const Timestamp first_instant =
       recording.frames.front().timestamp + ToNanoseconds(recording.told_rig.t_d_s);
+  if (first_instant < recording.truth.front().instant ||
+      first_instant > recording.truth.back().instant) {
+    run.failed = run.nees.failed = true;
+    run.reason = "did not start: its told t_d, " + FormatNumber(recording.told_rig.t_d_s) +
+                 " s, puts the first frame where there is no IMU";
+    return run;
+  }
   const Eigen::Quaterniond gauge =
       GaugeRotation(recording.true_rig, recording.told_rig, shared.calibration);
   estimator->Initialize(DrawStart(Reoriented(recording.TruthAt(first_instant), gauge),
                                   options.start, options.noise_scale,
                                   static_cast<std::uint64_t>(seed)));
 
-  MonteCarloRun run;
-  run.seed = seed;
-  run.told_rig = recording.told_rig;
   run.calibration = CalibrationErrors(estimator->layout(), Reoriented(recording.true_rig, gauge));
   std::vector<double> frame_ms;
   RunStatistics statistics(recording, gauge, options.settle_s, &run);

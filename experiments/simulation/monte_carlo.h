@@ -104,7 +104,7 @@ class OutputCollector {
     std::span<const MonteCarloRun> runs, const Eigen::VectorXd& predicted_sigma = {},
     const std::vector<double>& further_p_values = {});
 
-/// One seed of it.
+/// One seed of it. Throws InputError for a told calibration that no estimator can start from.
 [[nodiscard]] MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,
                                     const EstimatorMaker& make_estimator);
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "test/acceptance/program.h"
@@ -108,6 +110,7 @@ TEST(AblateTest, RunsWithoutAStateAreFailedRunsAndNoCrash) {
 TEST(AblateTest, BadInputIsOneClearLine) {
   TemporaryFolder folder;
   const std::string out = folder / "out";
+  WriteFile(folder / "focal.yaml", "told_offset: {intrinsics_px: [-500, 0, 0, 0]}\n");
   const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
       {Ablate(out, {}, "t_dd"), "unknown name 't_dd'; did you mean 't_d'?"},
       {Ablate(out, {}, "t_d,t_d"), "'t_d' stands there twice"},
@@ -115,6 +118,12 @@ TEST(AblateTest, BadInputIsOneClearLine) {
       {Ablate(out, {"--set", "shared.calibration.imu_frame=camera"}, "all"),
        "shared.calibration.imu_frame: estimating all: camera ties"},
       {Ablate(out, {"--perturb", folder / "none.yaml"}), "none.yaml"},
+      {Ablate(out, {"--set", "shared.calibration.told_offset.t_d_s=[0.01]"}),
+       "told_offset: have no effect in duet ablate; expected --perturb FILE"},
+      {Ablate(out, {"--set", "shared.calibration.cameras=[1]"}),
+       "shared.calibration.cameras: names camera 1; expected cameras of the rig"},
+      {Ablate(out, {"--perturb", folder / "focal.yaml"}),
+       "told_offset.intrinsics_px: the told fx of camera 0 is -41"},
       {Ablate(out, {"--jobs", "0"}), "--jobs: is 0; expected at least 1"},
       {Ablate(out, {"--duration", "3"}), "--duration: has no effect beside --simulate"},
       {Ablate(out, {"--dataset", folder / "x"}), "expected either --dataset or --simulate"}};
@@ -163,6 +172,32 @@ TEST(CalibratingRun, SaysWhatItFoundAndRefusesContradictions) {
   const ProgramResult numbers = run("numbers", {"told_offset.p_CB_m=[0.01]"});
   EXPECT_EQ(numbers.status, 2);
   EXPECT_THAT(numbers.err, HasSubstr("told_offset.p_CB_m: has 1 numbers; expected 3"));
+
+  // No estimator can do anything with these, whatever it is asked for.
+  WriteFile(folder / "study.yaml",
+            "study: bad\nstreams: [{name: sim, simulate: excited, "
+            "set: {simulation.duration_s: 1}}]\n"
+            "set: {shared.calibration.cameras: [1]}\nestimators: [msckf]\nseeds: 1..1\n");
+  const ProgramResult study =
+      RunDuet({"study", folder / "study.yaml", "--quiet", "--out", folder / "study"});
+  EXPECT_EQ(study.status, 2);
+  EXPECT_THAT(study.err, HasSubstr("shared.calibration.cameras: names camera 1; expected"));
+  const std::vector<std::pair<std::string, std::string>> impossible = {
+      {"cameras=[1]", "shared.calibration.cameras: names camera 1; expected"},
+      {"told_offset.intrinsics_px=[-500,0,0,0]", "told_offset.intrinsics_px: the told fx"},
+      {"told_offset.T_g=[-1,0,0,0,0,0,0,0,0]", "told_offset.T_g: the told T_g has a determinant"}};
+  for (const auto& [setting, says] : impossible) {
+    const ProgramResult ran = run("impossible", {setting});
+    const ProgramResult observed =
+        RunDuet({"observability", "--quiet", "--dataset", folder / "data", "--set",
+                 "shared.calibration." + setting});
+    for (const ProgramResult& result : {ran, observed}) {
+      EXPECT_EQ(result.status, 2) << setting;
+      EXPECT_THAT(result.err, HasSubstr(says));
+      EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "impossible"));
+  }
 }
 
 }  // namespace
