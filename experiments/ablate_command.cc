@@ -5,6 +5,7 @@
 #include <map>
 
 #include "common/measurement/gauge.h"
+#include "common/measurement/told_checks.h"
 #include "common/measurement/told_errors.h"
 #include "common/support/input_error.h"
 #include "common/support/logging.h"
@@ -72,9 +73,22 @@ AblationDesign ParseDesign() {
   return AblationDesign::kOneAtATime;
 }
 
+// The perturbation in force as a file that --perturb takes.
+std::string PerturbationYaml(const CalibrationPriors& priors) {
+  ConfigSources sources;
+  ToldErrors errors = priors.told_errors;
+  ToldOffset offset = priors.told_offset;
+  sources.Read("told_errors", &errors);
+  sources.Read("told_offset", &offset);
+  return sources.ResolvedYaml();
+}
+
 void ReadPerturbation(const std::vector<std::string>& states, CalibrationPriors* priors) {
-  priors->told_errors = {};
-  priors->told_offset = {};
+  if (PerturbationYaml(*priors) != PerturbationYaml({})) {
+    throw InputError(
+        "shared.calibration.told_errors, told_offset: have no effect in duet ablate; expected "
+        "--perturb FILE");
+  }
   if (FLAGS_perturb.empty()) {
     priors->told_errors = PriorErrorsOf(states, *priors);
     return;
@@ -143,6 +157,7 @@ void RunOnSimulation(const CommandLine& line, Ablation* ablation) {
   configuration.Read(&sources);
   options.shared = configuration.shared;
   options.start = configuration.initialization;
+  options.settle_s = configuration.evaluation.nees_settle_s;
   options.told_from_priors = false;
   ablation->plan = ReadPlan(configuration.shared);
   ablation->cells = RunPlan(
@@ -175,6 +190,15 @@ Eigen::VectorXd PredictSigma(const Ablation& ablation, const AblationCell& cell)
   return predicted.CalibrationCovariance().diagonal().cwiseSqrt();
 }
 
+// Of every seed.
+void CheckToldOf(const AblationPlan& plan, const RigCalibration& rig) {
+  CalibrationPriors priors = plan.priors;
+  for (int seed = plan.first_seed; seed <= plan.last_seed; ++seed) {
+    priors.told_errors_seed = seed;
+    CheckTold(ToldRig(rig, priors), priors);
+  }
+}
+
 void RunOnRecording(const CommandLine& line, Ablation* ablation) {
   Session& session = ablation->session;
   session = OpenSession(line, FLAGS_dataset, FLAGS_tracks);
@@ -183,6 +207,7 @@ void RunOnRecording(const CommandLine& line, Ablation* ablation) {
                      ": has no ground truth; an ablation measures against it");
   }
   ablation->plan = ReadPlan(session.configuration.shared);
+  CheckToldOf(ablation->plan, session.recording.rig);  // before the images are tracked
   const std::vector<TrackFrameSet> frames = TracksOf(session, FLAGS_quiet);
   if (frames.empty()) return;
   ablation->tracks_sha256 = HashTrackStream(frames);
@@ -191,16 +216,6 @@ void RunOnRecording(const CommandLine& line, Ablation* ablation) {
                               priors.told_errors_seed = seed;
                               return RunRecorded(session, frames, estimator, priors);
                             });
-}
-
-// The perturbation in force as a file that --perturb takes.
-std::string PerturbationYaml(const CalibrationPriors& priors) {
-  ConfigSources sources;
-  ToldErrors errors = priors.told_errors;
-  ToldOffset offset = priors.told_offset;
-  sources.Read("told_errors", &errors);
-  sources.Read("told_offset", &offset);
-  return sources.ResolvedYaml();
 }
 
 void CheckFlags(const CommandLine& line) {
@@ -238,13 +253,15 @@ int RunAblate(const CommandLine& line) {
                    << ": no prediction: " << error.what();
     }
   }
-  const PredictedSigma predicted = [&](const AblationCell& cell) { return predictions[&cell]; };
-  const std::string text = AblationText(cells, simulated, predicted);
+  const AblationClaims claims{
+      .consistency = simulated,
+      .nees_settle_s = ablation.simulation.settle_s,
+      .predicted_sigma = [&](const AblationCell& cell) { return predictions[&cell]; }};
+  const std::string text = AblationText(cells, claims);
   WriteTextFile(record.path() / "ablation.txt", text);
-  WriteTextFile(record.path() / "ablation.json",
-                AblationJson(cells, simulated, predicted).dump(2) + "\n");
+  WriteTextFile(record.path() / "ablation.json", AblationJson(cells, claims).dump(2) + "\n");
   WriteTextFile(record.path() / "perturbation.yaml", PerturbationYaml(ablation.plan.priors));
-  WriteTextFile(record.path() / "runs.csv", AblationRunsCsv(cells));
+  WriteTextFile(record.path() / "runs.csv", AblationRunsCsv(cells, claims));
   WriteTextFile(record.path() / "calibration.csv", AblationCurvesCsv(cells));
   // config.yaml says what the states were before the design switched them.
   record.manifest()["states"] = FLAGS_states;
@@ -281,8 +298,9 @@ Command AblateCommand() {
           "(shared.calibration.*.sigma) with the run's seed. Prints accuracy, consistency "
           "(simulation only), cost, and the calibration's errors at the end beside what was "
           "reported; writes ablation.json, runs.csv and calibration.csv (the data of the "
-          "convergence curves: error and sigma of every component over time). On a recording its "
-          "own calibration is taken as the true one. --set takes the keys of duet config and, "
+          "convergence curves: error and sigma of every component over time). On a recording "
+          "estimates are compared with its own calibration, which is no truth. --set takes the "
+          "keys of duet config and, "
           "with --simulate, of simulation (duet simulate).",
       .example =
           "duet ablate --simulate excited --states t_d,p_CB,intrinsics --seeds 1..10 --out "

@@ -51,9 +51,12 @@ struct EvaluationSettings {
              .unit = "m",
              .min = 1e-3,
              .max = 1e6});
-    v.Field(
-        "nees_settle_s", &nees_settle_s,
-        {.doc = "NEES counts from this long after the start.", .unit = "s", .min = 0, .max = 1e3});
+    v.Field("nees_settle_s", &nees_settle_s,
+            {.doc = "NEES counts from this long after the first state; in duet montecarlo and duet "
+                    "ablate --simulate the errors do too, ATE among them.",
+             .unit = "s",
+             .min = 0,
+             .max = 1e3});
   }
 
   [[nodiscard]] EvaluationOptions Options() const {

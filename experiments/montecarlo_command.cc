@@ -31,6 +31,7 @@ int RunMonteCarloCommand(const CommandLine& line) {
   configuration.Read(&sources);
   options.shared = configuration.shared;
   options.start = configuration.initialization;
+  options.settle_s = configuration.evaluation.nees_settle_s;
   const MonteCarloResult result = RunMonteCarlo(options, [&](const EstimatorSetup& setup) {
     return MakeEstimator(FLAGS_backend, setup, configuration.backends);
   });

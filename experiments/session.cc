@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/measurement/gauge.h"
+#include "common/measurement/told_checks.h"
 #include "common/measurement/told_errors.h"
 #include "common/support/input_error.h"
 #include "common/support/logging.h"
@@ -31,6 +32,7 @@ EstimatorSetup Session::SetupWith(const SharedOptions& shared) const {
                        .imu_noise = shared.imu_noise_factors.Times(recording.imu_sensor.noise),
                        .g_G = recording.g_G(),
                        .shared = shared};
+  CheckTold(setup.rig, shared.calibration);
   CheckBounds(setup.rig, shared);
   return setup;
 }

@@ -21,7 +21,7 @@ struct Session {
   std::string init = "auto";  ///< --init
   std::uint64_t seed = 0;     ///< --seed
 
-  /// What estimators are told.
+  /// What estimators are told. Throws InputError where no estimator can start from it (CheckTold).
   [[nodiscard]] EstimatorSetup Setup() const { return SetupWith(configuration.shared); }
   [[nodiscard]] EstimatorSetup SetupWith(const SharedOptions& shared) const;
   /// The true poses (which there must be) in the axes that the setup's gauge ties the body to; the

@@ -1,6 +1,8 @@
 #include "experiments/ablation/ablation_report.h"
 
 #include <cmath>
+#include <cstdio>
+#include <optional>
 
 #include "common/support/numeric_text.h"
 #include "evaluation/proportion.h"
@@ -10,7 +12,8 @@
 namespace duet {
 namespace {
 
-constexpr double kSettleSeconds = 2.0;
+/// SummarizeCalibration's name of all blocks together.
+constexpr const char* kWholeCalibration = "calibration";
 constexpr double kPriorSigmas = 3.0;
 /// How often a told error that is drawn from its prior is larger than that.
 constexpr double kOutsidePriorByChance = 0.0026998;
@@ -22,9 +25,13 @@ struct CellSummary {
   ErrorSummary orientation_deg;
   ErrorSummary frame_ms;
   double coverage_s = 0.0;  ///< the smallest
-  /// Of all numbers, instants and runs: how often the estimate is further than kPriorSigmas of its
-  /// prior from the told value. Told errors drawn from the prior make it 0.0027 at most.
-  double outside_prior = 0.0;
+  /// Of all runs, failed ones too.
+  int frames = 0;
+  int dead_reckoned = 0;
+  /// Of all numbers, instants and runs, failed ones too: how often the estimate is further than
+  /// kPriorSigmas of its prior from the told value. Told errors drawn from the prior make it 0.0027
+  /// at most. NaN where nothing was estimated.
+  double outside_prior = std::nan("");
   /// The same at the end of each run, failed ones too: how many of the numbers of all runs, and the
   /// probability of as many or more where an estimate is as far off as its told value was drawn.
   int outside_at_end = 0;
@@ -34,18 +41,24 @@ struct CellSummary {
   std::vector<CalibrationBlockSummary> calibration;
 };
 
-CellSummary SummarizeCell(const AblationCell& cell, bool consistency,
-                          const PredictedSigma& predicted_sigma) {
+CellSummary SummarizeCell(const AblationCell& cell, const AblationClaims& claims) {
   CellSummary summary;
   std::vector<double> position_m;
   std::vector<double> orientation_deg;
   std::vector<double> frame_ms;
   bool first = true;
+  double outside_samples = 0.0;
+  double samples = 0.0;
   for (const MonteCarloRun& run : cell.runs) {
     frame_ms.push_back(run.frame_ms_median);
     summary.coverage_s = first ? run.coverage_s : std::min(summary.coverage_s, run.coverage_s);
     first = false;
+    summary.frames += run.frames;
+    summary.dead_reckoned += run.dead_reckoned;
     if (!run.calibration.empty()) {
+      const auto of_run = static_cast<double>(run.calibration.samples().size());
+      samples += of_run;
+      outside_samples += of_run * run.calibration.ShareOutsidePrior(run.told_rig, kPriorSigmas);
       summary.outside_at_end += run.calibration.CountOutsidePriorAtEnd(run.told_rig, kPriorSigmas);
       summary.numbers_at_end += run.calibration.layout().size();
     }
@@ -53,12 +66,11 @@ CellSummary SummarizeCell(const AblationCell& cell, bool consistency,
       ++summary.failed;
       continue;
     }
-    summary.outside_prior += run.calibration.ShareOutsidePrior(run.told_rig, kPriorSigmas) /
-                             static_cast<double>(cell.runs.size());
     if (!std::isfinite(run.ate_position_m)) continue;  // a truth that stands still
     position_m.push_back(run.ate_position_m);
     orientation_deg.push_back(run.ate_orientation_deg);
   }
+  if (samples > 0.0) summary.outside_prior = outside_samples / samples;
   if (summary.numbers_at_end > 0) {
     summary.chance_of_outside =
         BinomialUpperTail(summary.outside_at_end, summary.numbers_at_end, kOutsidePriorByChance);
@@ -67,16 +79,26 @@ CellSummary SummarizeCell(const AblationCell& cell, bool consistency,
   summary.orientation_deg = Summarize(orientation_deg);
   summary.frame_ms = Summarize(frame_ms);
   std::vector<double> further_p_values;
-  if (consistency) {
-    for (const BlockConsistency& block : SummarizeRuns(cell.runs, kSettleSeconds).blocks) {
+  if (claims.consistency) {
+    for (const BlockConsistency& block : SummarizeRuns(cell.runs, claims.nees_settle_s).blocks) {
       if (block.block != NeesBlock::kPose) continue;
       summary.pose = block;
       further_p_values.push_back(block.p_value);
     }
   }
   summary.calibration =
-      SummarizeCalibrationOfRuns(cell.runs, predicted_sigma(cell), further_p_values);
+      SummarizeCalibrationOfRuns(cell.runs, claims.predicted_sigma(cell), further_p_values);
   return summary;
+}
+
+std::string Scientific(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.2e", value);
+  return text;
+}
+
+std::string CountOf(int count, int of) {
+  return of == 0 ? "-" : std::to_string(count) + " of " + std::to_string(of);
 }
 
 nlohmann::ordered_json Spread(const ErrorSummary& errors) {
@@ -87,20 +109,57 @@ nlohmann::ordered_json Spread(const ErrorSummary& errors) {
           {"max", errors.max}};
 }
 
+// Of a recording: without what only a known truth allows to say.
+std::string OwnCalibrationText(const std::vector<CalibrationBlockSummary>& blocks) {
+  TextTable table({"calibration, against the recording's own", "runs", "prior", "difference rms",
+                   "reported", "settled [s]"});
+  for (const CalibrationBlockSummary& block : blocks) {
+    if (block.name == kWholeCalibration) continue;  // units differ
+    table.AddRow({block.name, std::to_string(block.runs), Scientific(block.prior_sigma),
+                  Scientific(block.rms_error), Scientific(block.rms_sigma),
+                  Number(block.convergence_s, 1)});
+  }
+  return table.Text();
+}
+
+nlohmann::ordered_json OwnCalibrationJson(const CalibrationBlockSummary& block) {
+  nlohmann::ordered_json json = {{"runs", block.runs},
+                                 {"prior_sigma", block.prior_sigma},
+                                 {"rms_difference", block.rms_error},
+                                 {"rms_reported_sigma", block.rms_sigma}};
+  if (std::isfinite(block.convergence_s)) json["settled_s"] = block.convergence_s;
+  return json;
+}
+
+nlohmann::ordered_json CalibrationJson(const CalibrationBlockSummary& block) {
+  nlohmann::ordered_json json = {{"runs", block.runs},
+                                 {"dof", block.dof},
+                                 {"prior_sigma", block.prior_sigma},
+                                 {"rms_error", block.rms_error},
+                                 {"rms_reported_sigma", block.rms_sigma},
+                                 {"error_over_reported", block.error_over_sigma}};
+  if (block.error_over_predicted) json["error_over_predicted"] = *block.error_over_predicted;
+  json["mean_nees"] = block.mean_nees;
+  json["band_99"] = {block.band.low, block.band.high};
+  json["p_value"] = block.p_value;
+  json["rejected"] = block.rejected;
+  if (std::isfinite(block.convergence_s)) json["settled_s"] = block.convergence_s;
+  return json;
+}
+
 }  // namespace
 
-std::string AblationText(const std::vector<AblationCell>& cells, bool consistency,
-                         const PredictedSigma& predicted_sigma) {
+std::string AblationText(const std::vector<AblationCell>& cells, const AblationClaims& claims) {
   std::vector<std::string> header = {
-      "estimated",  "runs",          "failed",    "ATE [m]",
-      "p95 [m]",    "ATE [deg]",     "p95 [deg]", "least covered [s]",
-      "frame [ms]", "off > 3 sigma", "by chance"};
-  if (consistency) header.emplace_back("pose NEES (6)");
+      "estimated",     "runs",       "failed",        "ATE [m]",
+      "p95 [m]",       "ATE [deg]",  "p95 [deg]",     "least covered [s]",
+      "dead reckoned", "frame [ms]", "off > 3 sigma", "by chance"};
+  if (claims.consistency) header.emplace_back("pose NEES (6)");
   TextTable table(header);
   std::string details;
   const std::string* estimator = nullptr;
   for (const AblationCell& cell : cells) {
-    const CellSummary summary = SummarizeCell(cell, consistency, predicted_sigma);
+    const CellSummary summary = SummarizeCell(cell, claims);
     if (estimator == nullptr || *estimator != cell.estimator) table.AddSection(cell.estimator);
     estimator = &cell.estimator;
     std::vector<std::string> row = {
@@ -112,74 +171,74 @@ std::string AblationText(const std::vector<AblationCell>& cells, bool consistenc
         Number(summary.orientation_deg.median, 3),
         Number(summary.orientation_deg.p95, 3),
         Number(summary.coverage_s, 1),
+        CountOf(summary.dead_reckoned, summary.frames),
         Number(summary.frame_ms.median, 2),
-        std::to_string(summary.outside_at_end) + " of " + std::to_string(summary.numbers_at_end),
-        Number(summary.chance_of_outside, 3)};
-    if (consistency) row.push_back(summary.pose ? Number(summary.pose->mean, 2) : "-");
+        CountOf(summary.outside_at_end, summary.numbers_at_end),
+        summary.numbers_at_end > 0 ? Number(summary.chance_of_outside, 3) : "-"};
+    if (claims.consistency) row.push_back(summary.pose ? Number(summary.pose->mean, 2) : "-");
     table.AddRow(row);
     if (!summary.calibration.empty()) {
       details += "\n" + cell.estimator + ", estimated: " + cell.variant.name + "\n" +
-                 CalibrationText(summary.calibration);
+                 (claims.consistency ? CalibrationText(summary.calibration)
+                                     : OwnCalibrationText(summary.calibration));
     }
   }
   return table.Text() + details;
 }
 
-nlohmann::ordered_json AblationJson(const std::vector<AblationCell>& cells, bool consistency,
-                                    const PredictedSigma& predicted_sigma) {
+nlohmann::ordered_json AblationJson(const std::vector<AblationCell>& cells,
+                                    const AblationClaims& claims) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const AblationCell& cell : cells) {
-    const CellSummary summary = SummarizeCell(cell, consistency, predicted_sigma);
-    nlohmann::ordered_json entry = {{"estimator", cell.estimator},
-                                    {"variant", cell.variant.name},
-                                    {"estimated", cell.variant.estimated},
-                                    {"runs", cell.runs.size()},
-                                    {"failed", summary.failed},
-                                    {"ate_position_m", Spread(summary.position_m)},
-                                    {"ate_orientation_deg", Spread(summary.orientation_deg)},
-                                    {"least_coverage_s", summary.coverage_s},
-                                    {"frame_ms", Spread(summary.frame_ms)},
-                                    {"outside_3_prior_sigmas", summary.outside_prior},
-                                    {"outside_3_prior_sigmas_at_end",
-                                     {{"count", summary.outside_at_end},
-                                      {"of", summary.numbers_at_end},
-                                      {"by_chance", summary.chance_of_outside}}}};
+    const CellSummary summary = SummarizeCell(cell, claims);
+    nlohmann::ordered_json entry = {
+        {"estimator", cell.estimator},
+        {"variant", cell.variant.name},
+        {"estimated", cell.variant.estimated},
+        {"runs", cell.runs.size()},
+        {"failed", summary.failed},
+        {"ate_position_m", Spread(summary.position_m)},
+        {"ate_orientation_deg", Spread(summary.orientation_deg)},
+        {"least_coverage_s", summary.coverage_s},
+        {"dead_reckoned", {{"frames", summary.dead_reckoned}, {"of", summary.frames}}},
+        {"frame_ms", Spread(summary.frame_ms)},
+        {"outside_3_prior_sigmas", summary.outside_prior},
+        {"outside_3_prior_sigmas_at_end",
+         {{"count", summary.outside_at_end},
+          {"of", summary.numbers_at_end},
+          {"by_chance", summary.chance_of_outside}}}};
     if (summary.pose) {
       entry["pose_nees"] = {{"mean", summary.pose->mean},
                             {"median_instant", summary.pose->median_instant},
                             {"rejected", summary.pose->rejected}};
     }
     for (const CalibrationBlockSummary& block : summary.calibration) {
-      nlohmann::ordered_json row = {{"runs", block.runs},
-                                    {"dof", block.dof},
-                                    {"prior_sigma", block.prior_sigma},
-                                    {"rms_error", block.rms_error},
-                                    {"rms_reported_sigma", block.rms_sigma},
-                                    {"error_over_reported", block.error_over_sigma}};
-      if (block.error_over_predicted) row["error_over_predicted"] = *block.error_over_predicted;
-      row["mean_nees"] = block.mean_nees;
-      row["band_99"] = {block.band.low, block.band.high};
-      row["p_value"] = block.p_value;
-      row["rejected"] = block.rejected;
-      if (std::isfinite(block.convergence_s)) row["settled_s"] = block.convergence_s;
-      entry["calibration"][block.name] = row;
+      if (claims.consistency) {
+        entry["calibration"][block.name] = CalibrationJson(block);
+      } else if (block.name != kWholeCalibration) {
+        entry["against_own_calibration"][block.name] = OwnCalibrationJson(block);
+      }
     }
     json.push_back(entry);
   }
   return json;
 }
 
-std::string AblationRunsCsv(const std::vector<AblationCell>& cells) {
+std::string AblationRunsCsv(const std::vector<AblationCell>& cells, const AblationClaims& claims) {
   std::string text =
-      "#estimator,estimated,seed,failed,coverage [s],ate position [m],ate orientation [deg],"
+      "#estimator,estimated,seed,failed,coverage [s],frames,dead reckoned,ate position [m],ate "
+      "orientation [deg],"
       "calibration nees,calibration size,frame median [ms],frame p99 [ms]\n";
   for (const AblationCell& cell : cells) {
     for (const MonteCarloRun& run : cell.runs) {
       text += cell.estimator + "," + cell.variant.name + "," + std::to_string(run.seed) + "," +
-              (run.failed ? "1" : "0");
-      for (const double value : {run.coverage_s, run.ate_position_m, run.ate_orientation_deg,
-                                 run.calibration.Nees().value_or(0.0)}) {
-        text += "," + FormatNumber(value);
+              (run.failed ? "1" : "0") + "," + FormatNumber(run.coverage_s) + "," +
+              std::to_string(run.frames) + "," + std::to_string(run.dead_reckoned);
+      const std::optional<double> nees =
+          claims.consistency ? run.calibration.Nees() : std::optional<double>();
+      for (const double value :
+           {run.ate_position_m, run.ate_orientation_deg, nees.value_or(std::nan(""))}) {
+        text += "," + (std::isfinite(value) ? FormatNumber(value) : "");
       }
       text += "," + std::to_string(run.calibration.layout().size());
       text += "," + FormatNumber(run.frame_ms_median) + "," + FormatNumber(run.frame_ms_p99) + "\n";

@@ -57,8 +57,8 @@ MonteCarloRun RunRecorded(const Session& session, const std::vector<TrackFrameSe
   const Timestamp horizon = ToNanoseconds(ImuHorizon(configuration.shared));
   std::vector<double> frame_ms;
   std::vector<StampedPose> estimate;
+  OutputCollector collector(&run);
   bool started = false;
-  Timestamp first = 0;
   for (const TrackFrameSet& frame : frames) {
     feed.Advance(frame.timestamp + horizon, estimator.get());
     if (!started) {
@@ -66,29 +66,14 @@ MonteCarloRun RunRecorded(const Session& session, const std::vector<TrackFrameSe
       if (!initial) continue;
       estimator->Initialize(*initial);
       started = true;
-      first = frame.timestamp;
     }
     const double before_ms = ThreadCpuMs();
     const EstimatorOutput& output = estimator->ProcessFrame(frame);
     frame_ms.push_back(ThreadCpuMs() - before_ms);
-    ++run.frames;
-    run.coverage_s = SecondsBetween(first, frame.timestamp);
-    if (output.status == EstimatorStatus::kFailed) {
-      run.failed = true;
-      run.reason = output.reason;
-      break;
-    }
-    if (output.status == EstimatorStatus::kInitializing) continue;
-    if (output.status == EstimatorStatus::kDeadReckoning) ++run.dead_reckoned;
-    run.used += output.features.used;
-    run.gated += output.features.gated;
-    if (const int size = estimator->layout().size(); size > 0) {
-      run.calibration.Add(SecondsBetween(first, frame.timestamp), output.rig,
-                          output.covariance.block(15, 15, size, size));
-    }
-    if (estimate.empty() || output.state.instant > estimate.back().timestamp) {
+    if (collector.Add(output)) {
       estimate.push_back({output.state.instant, output.state.nav.pose()});
     }
+    if (run.failed) break;
   }
   const ErrorSummary cost = Summarize(frame_ms);
   run.frame_ms_median = cost.median;
@@ -97,6 +82,7 @@ MonteCarloRun RunRecorded(const Session& session, const std::vector<TrackFrameSe
     run.failed = true;
     run.reason = "did not start: " + start.reason();
   }
+  collector.Finish();
   if (!run.failed) AddAccuracy(session, setup, estimate, &run);
   return run;
 }

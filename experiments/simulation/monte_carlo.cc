@@ -9,7 +9,9 @@
 #include "common/geometry/angle.h"
 #include "common/geometry/so3.h"
 #include "common/measurement/gauge.h"
+#include "common/measurement/told_checks.h"
 #include "common/measurement/told_errors.h"
+#include "common/support/numeric_text.h"
 #include "common/support/stage_timer.h"
 #include "evaluation/errors.h"
 #include "evaluation/statistics.h"
@@ -28,20 +30,10 @@ class RunStatistics {
   // The truth is taken in the axes that the estimator's gauge ties the body to.
   RunStatistics(const SimulatedRecording& recording, const Eigen::Quaterniond& gauge,
                 double settle_s, MonteCarloRun* run)
-      : recording_(recording), gauge_(gauge), settle_s_(settle_s), run_(*run) {}
+      : recording_(recording), gauge_(gauge), settle_s_(settle_s), run_(*run), collector_(run) {}
 
   void Add(const EstimatorOutput& output) {
-    ++run_.frames;
-    run_.used += output.features.used;
-    run_.gated += output.features.gated;
-    if (output.status == EstimatorStatus::kDeadReckoning) ++run_.dead_reckoned;
-    if (output.status == EstimatorStatus::kInitializing) return;
-    if (first_ == 0) first_ = output.frame_timestamp;
-    run_.coverage_s = SecondsBetween(first_, output.frame_timestamp);
-    if (const int size = run_.calibration.layout().size(); size > 0) {
-      run_.calibration.Add(run_.coverage_s, output.rig,
-                           output.covariance.block(15, 15, size, size));
-    }
+    if (!collector_.Add(output)) return;
     const InertialState truth = Reoriented(recording_.TruthAt(output.state.instant), gauge_);
     run_.nees.samples.push_back(
         ComputeNees(output.frame_timestamp, truth, output.state, output.covariance));
@@ -54,10 +46,16 @@ class RunStatistics {
   }
 
   void Finish() {
-    run_.nees.start = first_;
+    collector_.Finish();
+    if (!run_.failed && pairs_.size() < 3) {
+      run_.failed = true;
+      run_.reason = "fewer than three of its states come " + FormatNumber(settle_s_) +
+                    " s after the first or later (evaluation.nees_settle_s)";
+    }
+    run_.nees.start = collector_.first_frame();
     run_.nees.failed = run_.failed;
+    if (run_.failed) return;
     const double count = static_cast<double>(pairs_.size());
-    if (pairs_.empty()) return;
     const auto rms = [&](int block) {
       return std::sqrt(squares_.segment<3>(3 * block).sum() / count);
     };
@@ -76,7 +74,7 @@ class RunStatistics {
   Eigen::Quaterniond gauge_;
   double settle_s_;
   MonteCarloRun& run_;
-  Timestamp first_ = 0;
+  OutputCollector collector_;
   Vector15d squares_ = Vector15d::Zero();
   std::vector<PosePair> pairs_;
 };
@@ -92,6 +90,36 @@ std::string Format(const char* format, ...) {
 }
 
 }  // namespace
+
+bool OutputCollector::Add(const EstimatorOutput& output) {
+  ++run_.frames;
+  run_.used += output.features.used;
+  run_.gated += output.features.gated;
+  if (output.status == EstimatorStatus::kFailed) {
+    run_.failed = true;
+    run_.reason = output.reason;
+    return false;
+  }
+  if (output.status == EstimatorStatus::kDeadReckoning) ++run_.dead_reckoned;
+  const bool holds_state =
+      output.status != EstimatorStatus::kInitializing && output.covariance.size() > 0;
+  if (!holds_state) why_none_ = output.reason;
+  if (!holds_state || (has_state_ && output.state.instant <= newest_)) return false;
+  if (!has_state_) first_frame_ = output.frame_timestamp;
+  has_state_ = true;
+  newest_ = output.state.instant;
+  run_.coverage_s = SecondsBetween(first_frame_, output.frame_timestamp);
+  if (const int size = run_.calibration.layout().size(); size > 0) {
+    run_.calibration.Add(run_.coverage_s, output.rig, output.covariance.block(15, 15, size, size));
+  }
+  return true;
+}
+
+void OutputCollector::Finish() {
+  if (has_state_ || run_.failed) return;
+  run_.failed = true;
+  run_.reason = "has no state: " + why_none_;
+}
 
 Matrix15d StartCovariance(const InitializationOptions& start, double scale) {
   Vector15d sigma;
@@ -124,23 +152,31 @@ MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,
   simulation.told_cameras = priors.cameras;
   SimulatedRecording recording = Simulate(simulation);
   recording.told_rig = AddToldOffset(recording.told_rig, priors.told_offset);
+  CheckTold(recording.told_rig, priors);
   SharedOptions shared = options.shared;
   shared.calibration = ScaledPriors(shared.calibration, simulation.noise_scale);
   IncludeTold(recording.told_rig, &shared);
   const EstimatorSetup setup = MakeSetup(recording, shared);
   const std::unique_ptr<Estimator> estimator = make_estimator(setup);
 
+  MonteCarloRun run;
+  run.seed = seed;
+  run.told_rig = recording.told_rig;
   const Timestamp first_instant =
       recording.frames.front().timestamp + ToNanoseconds(recording.told_rig.t_d_s);
+  if (first_instant < recording.truth.front().instant ||
+      first_instant > recording.truth.back().instant) {
+    run.failed = run.nees.failed = true;
+    run.reason = "did not start: its told t_d, " + FormatNumber(recording.told_rig.t_d_s) +
+                 " s, puts the first frame where there is no IMU";
+    return run;
+  }
   const Eigen::Quaterniond gauge =
       GaugeRotation(recording.true_rig, recording.told_rig, shared.calibration);
   estimator->Initialize(DrawStart(Reoriented(recording.TruthAt(first_instant), gauge),
                                   options.start, options.noise_scale,
                                   static_cast<std::uint64_t>(seed)));
 
-  MonteCarloRun run;
-  run.seed = seed;
-  run.told_rig = recording.told_rig;
   run.calibration = CalibrationErrors(estimator->layout(), Reoriented(recording.true_rig, gauge));
   std::vector<double> frame_ms;
   RunStatistics statistics(recording, gauge, options.settle_s, &run);
@@ -151,12 +187,8 @@ MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,
     const double before_ms = ThreadCpuMs();
     const EstimatorOutput& output = estimator->ProcessFrame(frames);
     frame_ms.push_back(ThreadCpuMs() - before_ms);
-    if (output.status == EstimatorStatus::kFailed) {
-      run.failed = true;
-      run.reason = output.reason;
-      break;
-    }
     statistics.Add(output);
+    if (run.failed) break;
   }
   statistics.Finish();
   const ErrorSummary cost = Summarize(frame_ms);

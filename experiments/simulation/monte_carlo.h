@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -29,29 +30,30 @@ struct MonteCarloOptions {
   bool told_from_priors = true;
   int runs = 20;
   int threads = 2;
-  double settle_s = 2.0;
+  double settle_s = 2.0;  ///< evaluation.nees_settle_s
   /// Start errors, IMU and pixel noise and the priors of the calibration all multiplied by it.
   double noise_scale = 1.0;
 };
 
-/// One run. Errors are over the frames after settle_s.
+/// One run. All errors are over the states from settle_s after the first one on, as NEES is; NaN
+/// where a run has none. A run with fewer than three of them has failed: two poses always align.
 struct MonteCarloRun {
   int seed = 0;
   bool failed = false;
   std::string reason;
-  NeesRun nees;  ///< stamps are the frames'
-  int frames = 0;
-  int dead_reckoned = 0;
-  double coverage_s = 0.0;  ///< from the first to the last frame with a tracking output
+  NeesRun nees;             ///< stamps are the frames'
+  int frames = 0;           ///< given to the estimator
+  int dead_reckoned = 0;    ///< of these; skipped ones too
+  double coverage_s = 0.0;  ///< from the first to the last frame with a state of its own
   /// Root mean square, without alignment: the start error is part of it.
-  double position_rms_m = 0.0;
-  double orientation_rms_deg = 0.0;
-  double velocity_rms_m_per_s = 0.0;
-  double b_g_rms_rad_per_s = 0.0;
-  double b_a_rms_m_per_s2 = 0.0;
+  double position_rms_m = std::numeric_limits<double>::quiet_NaN();
+  double orientation_rms_deg = std::numeric_limits<double>::quiet_NaN();
+  double velocity_rms_m_per_s = std::numeric_limits<double>::quiet_NaN();
+  double b_g_rms_rad_per_s = std::numeric_limits<double>::quiet_NaN();
+  double b_a_rms_m_per_s2 = std::numeric_limits<double>::quiet_NaN();
   /// After position + yaw alignment, and a yaw of their own for the orientations.
-  double ate_position_m = 0.0;
-  double ate_orientation_deg = 0.0;
+  double ate_position_m = std::numeric_limits<double>::quiet_NaN();
+  double ate_orientation_deg = std::numeric_limits<double>::quiet_NaN();
   long used = 0;  ///< sums of FeatureCounts
   long gated = 0;
   CalibrationErrors calibration;  ///< of what is estimated; empty where nothing is
@@ -68,6 +70,28 @@ struct MonteCarloResult {
   [[nodiscard]] const BlockConsistency& Block(NeesBlock block) const;  ///< CHECKs that it is there
 };
 
+/// Collects what a run's outputs say of themselves, in order: counts, coverage, the calibration.
+class OutputCollector {
+ public:
+  explicit OutputCollector(MonteCarloRun* run) : run_(*run) {}
+
+  /// True where the output holds a state that is newer than the last one. A frame that the IMU does
+  /// not cover leaves the state where it was; before the first that it covers there is none. Fails
+  /// the run where the estimator did.
+  [[nodiscard]] bool Add(const EstimatorOutput& output);
+  /// Fails a run that never had a state.
+  void Finish();
+
+  [[nodiscard]] Timestamp first_frame() const { return first_frame_; }  ///< with a state
+
+ private:
+  MonteCarloRun& run_;
+  bool has_state_ = false;
+  Timestamp first_frame_ = 0;
+  Timestamp newest_ = 0;
+  std::string why_none_ = "there was no frame";
+};
+
 /// The same result for any number of threads.
 [[nodiscard]] MonteCarloResult RunMonteCarlo(const MonteCarloOptions& options,
                                              const EstimatorMaker& make_estimator);
@@ -80,7 +104,7 @@ struct MonteCarloResult {
     std::span<const MonteCarloRun> runs, const Eigen::VectorXd& predicted_sigma = {},
     const std::vector<double>& further_p_values = {});
 
-/// One seed of it.
+/// One seed of it. Throws InputError for a told calibration that no estimator can start from.
 [[nodiscard]] MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,
                                     const EstimatorMaker& make_estimator);
 

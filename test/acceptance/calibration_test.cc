@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "test/acceptance/program.h"
@@ -56,9 +58,59 @@ TEST(AblateTest, ComparesSubsetsWithTheSameBytesForAnyNumberOfJobs) {
   EXPECT_EQ(ReadFile(folder / "one/calibration.csv"), ReadFile(folder / "again/calibration.csv"));
 }
 
+// Shorter than the time before errors count: no error, and not one of 0. The setting is heeded.
+TEST(AblateTest, NoDataIsNoErrorOfZero) {
+  TemporaryFolder folder;
+  const auto ablate = [&](const std::string& out, const std::string& settle_s) {
+    return RunDuet(Ablate(folder / out,
+                          {"--set", "simulation.duration_s=1", "--set",
+                           "evaluation.nees_settle_s=" + settle_s, "--backends", "msckf"},
+                          "t_d", "1..1"));
+  };
+  const ProgramResult none = ablate("none", "2");
+  ASSERT_EQ(none.status, 0) << none.err;
+  EXPECT_THAT(none.out, HasSubstr("fewer than three of its states come 2 s after the first"));
+  EXPECT_THAT(ReadFile(folder / "none/runs.csv"), HasSubstr("msckf,none,1,1,1,21,0,,,,0,"));
+  const ProgramResult all = ablate("all", "0");
+  ASSERT_EQ(all.status, 0) << all.err;
+  for (const auto& cell : nlohmann::json::parse(ReadFile(folder / "all/ablation.json"))) {
+    EXPECT_EQ(cell["failed"], 0);
+    EXPECT_GT(cell["ate_position_m"]["median"], 0.0);
+    EXPECT_GT(cell["pose_nees"]["mean"], 0.0);
+  }
+}
+
+// The IMU is too slow for shared.max_imu_gap_s: no frame gives a state.
+TEST(AblateTest, RunsWithoutAStateAreFailedRunsAndNoCrash) {
+  TemporaryFolder folder;
+  const ProgramResult simulated =
+      RunDuet(Ablate(folder / "simulated", {"--set", "simulation.imu_rate_hz=15"}, "t_d", "1..1"));
+  ASSERT_EQ(simulated.status, 0) << simulated.err;
+  EXPECT_THAT(simulated.out,
+              HasSubstr("failed: msckf, t_d, seed 1 after 0.0 s: the IMU has a gap"));
+  const auto cells = nlohmann::json::parse(ReadFile(folder / "simulated/ablation.json"));
+  for (const auto& cell : cells) {
+    EXPECT_EQ(cell["failed"], 1);
+    EXPECT_TRUE(cell["ate_position_m"]["median"].is_null());
+    EXPECT_TRUE(cell["outside_3_prior_sigmas"].is_null());
+    EXPECT_GT(cell["dead_reckoned"]["frames"], 0);
+  }
+  const ProgramResult made =
+      RunDuet({"simulate", "--preset", "excited", "--set", "duration_s=3", "--set", "max_tracks=40",
+               "--out", folder / "data", "--quiet"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const ProgramResult recorded = RunDuet(
+      {"ablate", "--dataset", folder / "data", "--init", "groundtruth", "--states", "t_d",
+       "--seeds", "1..1", "--set", "shared.max_imu_gap_s=0.001", "--out", folder / "recorded"});
+  ASSERT_EQ(recorded.status, 0) << recorded.err;
+  EXPECT_THAT(recorded.out, HasSubstr("failed: window, t_d, seed 1 after 0.0 s: "));
+  EXPECT_THAT(recorded.out, testing::Not(HasSubstr("NEES")));
+}
+
 TEST(AblateTest, BadInputIsOneClearLine) {
   TemporaryFolder folder;
   const std::string out = folder / "out";
+  WriteFile(folder / "focal.yaml", "told_offset: {intrinsics_px: [-500, 0, 0, 0]}\n");
   const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
       {Ablate(out, {}, "t_dd"), "unknown name 't_dd'; did you mean 't_d'?"},
       {Ablate(out, {}, "t_d,t_d"), "'t_d' stands there twice"},
@@ -66,6 +118,12 @@ TEST(AblateTest, BadInputIsOneClearLine) {
       {Ablate(out, {"--set", "shared.calibration.imu_frame=camera"}, "all"),
        "shared.calibration.imu_frame: estimating all: camera ties"},
       {Ablate(out, {"--perturb", folder / "none.yaml"}), "none.yaml"},
+      {Ablate(out, {"--set", "shared.calibration.told_offset.t_d_s=[0.01]"}),
+       "told_offset: have no effect in duet ablate; expected --perturb FILE"},
+      {Ablate(out, {"--set", "shared.calibration.cameras=[1]"}),
+       "shared.calibration.cameras: names camera 1; expected cameras of the rig"},
+      {Ablate(out, {"--perturb", folder / "focal.yaml"}),
+       "told_offset.intrinsics_px: the told fx of camera 0 is -41"},
       {Ablate(out, {"--jobs", "0"}), "--jobs: is 0; expected at least 1"},
       {Ablate(out, {"--duration", "3"}), "--duration: has no effect beside --simulate"},
       {Ablate(out, {"--dataset", folder / "x"}), "expected either --dataset or --simulate"}};
@@ -114,6 +172,32 @@ TEST(CalibratingRun, SaysWhatItFoundAndRefusesContradictions) {
   const ProgramResult numbers = run("numbers", {"told_offset.p_CB_m=[0.01]"});
   EXPECT_EQ(numbers.status, 2);
   EXPECT_THAT(numbers.err, HasSubstr("told_offset.p_CB_m: has 1 numbers; expected 3"));
+
+  // No estimator can do anything with these, whatever it is asked for.
+  WriteFile(folder / "study.yaml",
+            "study: bad\nstreams: [{name: sim, simulate: excited, "
+            "set: {simulation.duration_s: 1}}]\n"
+            "set: {shared.calibration.cameras: [1]}\nestimators: [msckf]\nseeds: 1..1\n");
+  const ProgramResult study =
+      RunDuet({"study", folder / "study.yaml", "--quiet", "--out", folder / "study"});
+  EXPECT_EQ(study.status, 2);
+  EXPECT_THAT(study.err, HasSubstr("shared.calibration.cameras: names camera 1; expected"));
+  const std::vector<std::pair<std::string, std::string>> impossible = {
+      {"cameras=[1]", "shared.calibration.cameras: names camera 1; expected"},
+      {"told_offset.intrinsics_px=[-500,0,0,0]", "told_offset.intrinsics_px: the told fx"},
+      {"told_offset.T_g=[-1,0,0,0,0,0,0,0,0]", "told_offset.T_g: the told T_g has a determinant"}};
+  for (const auto& [setting, says] : impossible) {
+    const ProgramResult ran = run("impossible", {setting});
+    const ProgramResult observed =
+        RunDuet({"observability", "--quiet", "--dataset", folder / "data", "--set",
+                 "shared.calibration." + setting});
+    for (const ProgramResult& result : {ran, observed}) {
+      EXPECT_EQ(result.status, 2) << setting;
+      EXPECT_THAT(result.err, HasSubstr(says));
+      EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "impossible"));
+  }
 }
 
 }  // namespace
