@@ -321,7 +321,10 @@ Command AblateCommand() {
                 {.name = "set", .value = "KEY=VALUE", .repeatable = true},
                 {.name = "init",
                  .value = "groundtruth|rest|auto",
-                 .choices = {"groundtruth", "rest", "auto"}},
+                 .choices = {"groundtruth", "rest", "auto"},
+                 .meaning = "Where a recording's first state comes from: its ground truth; or "
+                            "standing still; auto: standing still, else a failure that says what "
+                            "was missing. Frames before the start have no estimate."},
                 {.name = "cameras", .value = "0|1|0,1", .choices = {"0", "1", "0,1"}},
                 {.name = "start", .value = "S"},
                 {.name = "duration", .value = "S"},

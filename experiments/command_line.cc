@@ -194,7 +194,7 @@ std::string CommandHelp(const Command& command) {
     } else {
       head += "\n" + std::string(kFlagColumn, ' ');
     }
-    std::string meaning = info.description;
+    std::string meaning = flag.meaning.empty() ? info.description : flag.meaning;
     if (flag.repeatable) meaning += " May be repeated.";
     if (flag.required) {
       meaning += " Required.";
@@ -212,9 +212,12 @@ std::string ProgramHelp(const std::vector<Command>& commands) {
   std::string text =
       "Duet: the same images and the same IMU, through a filter and through an optimizer.\n\n"
       "  duet COMMAND [flags]\n\nCommands\n";
-  const auto row = [](std::string name, const std::string& summary) {
-    name.resize(12, ' ');
-    return "  " + name + Wrapped(summary, 14) + "\n";
+  std::size_t width = 0;
+  for (const Command& command : commands) width = std::max(width, command.name.size());
+  width += 2;
+  const auto row = [width](std::string name, const std::string& summary) {
+    name.resize(width, ' ');
+    return "  " + name + Wrapped(summary, width + 2) + "\n";
   };
   for (const Command& command : commands) text += row(command.name, command.summary);
   text += row("help", "This text; duet help COMMAND for the flags of one command.");

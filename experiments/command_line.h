@@ -15,6 +15,7 @@ struct FlagUse {
   bool repeatable = false;                ///< every value is kept: CommandLine::All
   std::vector<std::string> choices = {};  ///< the values allowed; empty: any
   std::string without = {};  ///< for the help, where it is not the flag's default: "all cores"
+  std::string meaning = {};  ///< for the help, where it is not the flag's description
   /// Its gflags variable, where commands mean different things by one name: "figure_runs".
   std::string variable = {};
 };

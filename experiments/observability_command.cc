@@ -44,28 +44,22 @@ void EstimateEverything(CalibrationPriors* priors) {
   if (priors->imu_frame == ImuFrame::kCamera) priors->R_CB.estimated = false;
 }
 
-// The recording's tracks, or those of its images; empty where the user interrupted it.
-std::vector<TrackFrameSet> Tracks(Session* session) {
-  if (session->recording.vision != Vision::kImages) {
-    return std::move(session->recording.tracks.frames);
+// Before the work: WriteTextFile would find out after it.
+void CheckOut() {
+  if (FLAGS_out.empty()) return;
+  std::error_code ignored;
+  if (std::filesystem::exists(FLAGS_out, ignored)) {
+    throw InputError(FLAGS_out, 0, "", "exists; --out expects a file that does not exist yet");
   }
-  std::vector<TrackFrameSet> frames;
-  const auto tracker = StartTracking(
-      *session, [&](const auto& tracks, const auto& /*images*/) { frames.push_back(tracks); });
-  Progress progress("tracking", tracker->count(), "frames", FLAGS_quiet);
-  while (!Interrupted() && tracker->Next() != nullptr) {
-    progress.Update(static_cast<std::int64_t>(frames.size()));
+  const std::filesystem::path folder = std::filesystem::absolute(FLAGS_out).parent_path();
+  if (!std::filesystem::is_directory(folder, ignored)) {
+    throw InputError(FLAGS_out, 0, "",
+                     "lies in no folder; --out expects a file in one that exists");
   }
-  progress.Finish(Interrupted() ? "interrupted" : "");
-  if (Interrupted()) frames.clear();
-  return frames;
 }
 
 int RunObservability(const CommandLine& line) {
-  std::error_code ignored;
-  if (!FLAGS_out.empty() && std::filesystem::exists(FLAGS_out, ignored)) {
-    throw InputError(FLAGS_out, 0, "", "exists; --out expects a file that does not exist yet");
-  }
+  CheckOut();
   LogCapture log(FLAGS_quiet);
   Session session = OpenSession(line, FLAGS_dataset, FLAGS_tracks);
   const Recording& recording = session.recording;
@@ -81,7 +75,7 @@ int RunObservability(const CommandLine& line) {
   KnownMotion known = FLAGS_estimate.empty() ? MotionOfTruth(recording)
                                              : MotionOfEstimate(FLAGS_estimate, recording);
   const std::string source = FLAGS_estimate.empty() ? "truth" : FLAGS_estimate;
-  const std::vector<TrackFrameSet> tracked = Tracks(&session);
+  const std::vector<TrackFrameSet> tracked = TracksOf(session, FLAGS_quiet);
   if (Interrupted()) return kInterrupted;
 
   ImuBuffer imu;
@@ -161,7 +155,8 @@ Command ObservabilityCommand() {
       .description =
           "Answers 'can my recording calibrate this?' before an estimator runs: for the "
           "recording's "
-          "motion (its truth, or --estimate: a run's folder or a trajectory) the information that "
+          "motion (its truth of 5 s or more, or --estimate: a run's folder or a trajectory) the "
+          "information that "
           "IMU and tracks hold on each calibration state, the standard deviation to be expected at "
           "the end with tracks cut at the window (msckf.max_clones) and with whole ones, how it "
           "falls over time, and which combinations nothing tells apart (docs/observability.md). "

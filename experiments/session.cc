@@ -10,6 +10,8 @@
 #include "common/support/logging.h"
 #include "common/support/numeric_text.h"
 #include "experiments/common_flags.h"
+#include "experiments/interrupt.h"
+#include "experiments/progress.h"
 
 namespace duet {
 namespace {
@@ -104,6 +106,21 @@ std::unique_ptr<LiveTracker> StartTracking(const Session& session, LiveTracker::
                                        session.configuration.frontend,
                                        session.configuration.shared.max_tracks, session.seed,
                                        session.recording.imu, std::move(observer));
+}
+
+std::vector<TrackFrameSet> TracksOf(const Session& session, bool quiet) {
+  if (session.recording.vision != Vision::kImages) return session.recording.tracks.frames;
+  std::vector<TrackFrameSet> frames;
+  const std::unique_ptr<LiveTracker> tracker = StartTracking(
+      session,
+      [&](const TrackFrameSet& tracks, const ImageSet& /*images*/) { frames.push_back(tracks); });
+  Progress progress("tracking", tracker->count(), "frames", quiet);
+  while (!Interrupted() && tracker->Next() != nullptr) {
+    progress.Update(static_cast<std::int64_t>(frames.size()));
+  }
+  progress.Finish(Interrupted() ? "interrupted" : "");
+  if (Interrupted()) frames.clear();
+  return frames;
 }
 
 }  // namespace duet

@@ -43,4 +43,8 @@ struct Session {
 [[nodiscard]] std::unique_ptr<LiveTracker> StartTracking(const Session& session,
                                                          LiveTracker::Observer observer);
 
+/// The session's tracks: recorded ones, or those of the front end on its images (with progress).
+/// Empty after an interruption.
+[[nodiscard]] std::vector<TrackFrameSet> TracksOf(const Session& session, bool quiet);
+
 }  // namespace duet

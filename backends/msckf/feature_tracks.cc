@@ -16,7 +16,6 @@ int FeatureTracks::Create(std::uint64_t track_id) {
   }
   FeatureTrack& track = pool_[slot];
   track.track_id = track_id;
-  track.used = false;
   track.observations.clear();
   return slot;
 }
@@ -57,11 +56,7 @@ int FeatureTracks::Add(const TrackFrameSet& frames, std::uint64_t clone_id) {
   return count;
 }
 
-void FeatureTracks::Consume(int i) {
-  FeatureTrack& track = pool_[active_[i]];
-  track.observations.clear();
-  track.used = true;
-}
+void FeatureTracks::Consume(int i) { pool_[active_[i]].observations.clear(); }
 
 void FeatureTracks::RemoveClone(std::uint64_t clone_id) {
   for (const int slot : active_) {

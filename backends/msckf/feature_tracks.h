@@ -20,7 +20,6 @@ struct ClonedObservation {
 struct FeatureTrack {
   std::uint64_t track_id = 0;
   bool alive = true;  ///< seen in the newest frame
-  bool used = false;  ///< some of its earlier observations were used
   std::vector<ClonedObservation> observations;
 };
 

@@ -33,6 +33,11 @@ std::size_t EditDistance(const std::string& a, const std::string& b) {
   return last[b.size()];
 }
 
+bool IsFirstWordsOf(const std::string& name, const std::string& candidate) {
+  return candidate.size() > name.size() && candidate.compare(0, name.size(), name) == 0 &&
+         (candidate[name.size()] == '_' || candidate[name.size()] == '-');
+}
+
 }  // namespace
 
 std::string NearestName(std::string_view name, const std::vector<std::string>& candidates) {
@@ -42,6 +47,11 @@ std::string NearestName(std::string_view name, const std::vector<std::string>& c
   const std::string lower = Lower(name);
   const std::size_t limit = std::max<std::size_t>(2, name.size() / 3);
   std::string best;
+  for (const std::string& candidate : candidates) {
+    const bool shorter = best.empty() || candidate.size() < best.size();
+    if (shorter && IsFirstWordsOf(lower, Lower(candidate))) best = candidate;
+  }
+  if (!best.empty()) return best;
   std::size_t best_distance = limit + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t at_least = candidate.size() > name.size() ? candidate.size() - name.size()

@@ -9,8 +9,6 @@
 #include "evaluation/errors.h"
 #include "evaluation/statistics.h"
 #include "experiments/imu_feed.h"
-#include "experiments/interrupt.h"
-#include "experiments/progress.h"
 
 namespace duet {
 namespace {
@@ -85,21 +83,6 @@ MonteCarloRun RunRecorded(const Session& session, const std::vector<TrackFrameSe
   collector.Finish();
   if (!run.failed) AddAccuracy(session, setup, estimate, &run);
   return run;
-}
-
-std::vector<TrackFrameSet> TracksOf(const Session& session, bool quiet) {
-  if (session.recording.vision != Vision::kImages) return session.recording.tracks.frames;
-  std::vector<TrackFrameSet> frames;
-  const std::unique_ptr<LiveTracker> tracker = StartTracking(
-      session,
-      [&](const TrackFrameSet& tracks, const ImageSet& /*images*/) { frames.push_back(tracks); });
-  Progress progress("tracking", tracker->count(), "frames", quiet);
-  while (!Interrupted() && tracker->Next() != nullptr) {
-    progress.Update(static_cast<std::int64_t>(frames.size()));
-  }
-  progress.Finish();
-  if (Interrupted()) frames.clear();
-  return frames;
 }
 
 }  // namespace duet

@@ -16,8 +16,4 @@ namespace duet {
                                         const std::string& estimator_name,
                                         const CalibrationPriors& priors);
 
-/// The session's tracks: recorded ones, or those of the front end on its images (with progress).
-/// Empty after an interruption.
-[[nodiscard]] std::vector<TrackFrameSet> TracksOf(const Session& session, bool quiet);
-
 }  // namespace duet

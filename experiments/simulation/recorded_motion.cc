@@ -255,10 +255,13 @@ RecordedMotion FollowRecording(const Recording& recording, const std::string& na
   report.label = "real IMU, synthetic vision along " + name + "'s truth";
   if (recording.imu.size() < 2) throw InputError(recording.folder, 0, "", "no IMU samples");
   std::vector<StampedPose> poses = AlignedPoses(recording, options, &report);
-  if (poses.size() < 2 ||
-      SecondsBetween(poses.front().timestamp, poses.back().timestamp) < kShortest_s) {
+  const double shared_s =
+      poses.empty() ? 0.0 : SecondsBetween(poses.front().timestamp, poses.back().timestamp);
+  if (poses.size() < 2 || shared_s < kShortest_s) {
     throw InputError(recording.truth_file, 0, "",
-                     "truth and IMU share less than " + FormatFixed(kShortest_s, 0) + " s");
+                     "truth and IMU share " + FormatFixed(shared_s, 1) + " s; expected at least " +
+                         FormatFixed(kShortest_s, 0) +
+                         " s, for a spline through the truth and slow biases of the IMU");
   }
   BridgeJumps(recording, options, &poses, &report);
   motion.trajectory = SplineThrough(std::move(poses), recording.truth_file,

@@ -13,7 +13,7 @@ TEST(HelpTest, ListsEveryCommand) {
   const ProgramResult help = RunDuet({"help"});
   EXPECT_EQ(help.status, 0);
   for (const char* command :
-       {"compare", "track", "run", "evaluate", "report", "simulate", "config"}) {
+       {"compare", "track", "run", "evaluate", "report", "simulate", "config", "observability"}) {
     EXPECT_THAT(help.out, HasSubstr(std::string("\n  ") + command + " "));
     const ProgramResult one = RunDuet({"help", command});
     EXPECT_EQ(one.status, 0) << command;
@@ -36,6 +36,7 @@ TEST(HelpTest, OfACommandShowsItsFlagsOnlyWithDefaultsAndUnits) {
   EXPECT_THAT(run, HasSubstr("Default: auto."));
   EXPECT_THAT(run, Not(HasSubstr("--require")));
   EXPECT_THAT(run, Not(HasSubstr("logtostderr")));
+  EXPECT_THAT(RunDuet({"help", "ablate"}).out, Not(HasSubstr("drawn: its state")));
   EXPECT_THAT(RunDuet({"help", "track"}).out, HasSubstr("--save-overlay DIR"));
 }
 

@@ -53,6 +53,12 @@ TEST(Observability, SaysWhatARecordingCanCalibrate) {
   EXPECT_EQ(refused.status, 2);
   EXPECT_NE(refused.err.find("exists"), std::string::npos) << refused.err;
 
+  const ProgramResult nowhere =
+      RunDuet({"observability", "--quiet", "--dataset", recording, "--out", folder / "no/x.json"});
+  EXPECT_EQ(nowhere.status, 2);
+  EXPECT_NE(nowhere.err.find("lies in no folder"), std::string::npos) << nowhere.err;
+  EXPECT_TRUE(nowhere.out.empty()) << nowhere.out;  // before the work
+
   const std::vector<std::string> t_d_and_t_r = {"--set", "shared.calibration.t_d.state=estimated",
                                                 "--set", "shared.calibration.t_r.state=estimated"};
   const auto with = [&](std::vector<std::string> arguments) {
@@ -62,6 +68,11 @@ TEST(Observability, SaysWhatARecordingCanCalibrate) {
   const ProgramResult run = with({"run", "--quiet", "--dataset", recording, "--backend", "msckf",
                                   "--init", "groundtruth", "--out", folder / "run"});
   ASSERT_EQ(run.status, 0) << run.err;
+  const std::string truth = recording + "/mav0/state_groundtruth_estimate0/data.csv";
+  WriteFile(truth, ReadFile(truth).substr(0, ReadFile(truth).find('\n', 60'000) + 1));
+  const ProgramResult brief = with({"observability", "--quiet", "--dataset", recording});
+  EXPECT_EQ(brief.status, 2);
+  EXPECT_NE(brief.err.find("expected at least 5 s"), std::string::npos) << brief.err;
   std::filesystem::remove_all(std::filesystem::path(recording) / "mav0" /
                               "state_groundtruth_estimate0");
   const ProgramResult no_truth = with({"observability", "--quiet", "--dataset", recording});

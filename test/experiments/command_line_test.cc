@@ -32,9 +32,14 @@ std::vector<Command> Commands() {
            .example = "duet walk --test_folder here",
            .flags = {{.name = "test_folder", .value = "DIR", .required = true},
                      {.name = "test_seconds", .value = "S"},
-                     {.name = "test_silent"},
+                     {.name = "test_silent", .meaning = "Walks on tiptoe."},
                      {.name = "test_set", .value = "KEY=VALUE", .repeatable = true},
                      {.name = "test_mode", .value = "fast|slow", .choices = {"fast", "slow"}}},
+           .run = Remember},
+          {.name = "walk_on_and_on",
+           .summary = "Walks far.",
+           .description = "Walks far.",
+           .example = "duet walk_on_and_on",
            .run = Remember},
           {.name = "weigh",
            .summary = "Weighs files.",
@@ -115,7 +120,15 @@ TEST_F(CommandLineTest, HelpShowsEachFlagOfTheCommandWithDefaultAndUnit) {
   EXPECT_THAT(help, HasSubstr("May be repeated."));
   EXPECT_THAT(help, HasSubstr("Example\n  duet walk"));
   EXPECT_THAT(CommandHelp(Commands()[1]), Not(HasSubstr("test_")));
-  EXPECT_THAT(ProgramHelp(Commands()), HasSubstr("  weigh       Weighs files."));
+  EXPECT_THAT(ProgramHelp(Commands()), HasSubstr("  weigh           Weighs files."));
+}
+
+TEST_F(CommandLineTest, HelpHasRoomForTheLongestNameAndACommandsOwnMeanings) {
+  EXPECT_THAT(ProgramHelp(Commands()), HasSubstr("\n  walk_on_and_on  Walks far.\n"));
+  EXPECT_THAT(ProgramHelp(Commands()), HasSubstr("\n  walk            Walks.\n"));
+  const std::string walk = CommandHelp(Commands().front());
+  EXPECT_THAT(walk, HasSubstr("Walks on tiptoe."));
+  EXPECT_THAT(walk, testing::Not(HasSubstr("Says nothing.")));
 }
 
 }  // namespace

@@ -105,6 +105,11 @@ TEST(NearestName, FindsWhatAMisspellingWasMeantToBe) {
   EXPECT_EQ(NearestName("gat", names), "gate");
   EXPECT_EQ(NearestName("something_else", names), "");
   EXPECT_EQ(NearestName("", names), "");
+  // The unit is missing, and another name is a letter away.
+  const std::vector<std::string> errors = {"T_g", "p_CB_m", "R_CB_rad", "t_d_ms_old", "t_d_s"};
+  EXPECT_EQ(NearestName("t_d", errors), "t_d_s");
+  EXPECT_EQ(NearestName("r_cb", errors), "R_CB_rad");
+  EXPECT_EQ(NearestName("t_gg", errors), "T_g");
   EXPECT_EQ(DidYouMean("gaet", names), "; did you mean 'gate'?");
   EXPECT_EQ(DidYouMean("zzzzzz", names), "");
 }
