@@ -102,6 +102,12 @@ void RunRecorder::Add(const TrackFrameSet& frames, const EstimatorOutput& output
       ++summary_.dead_reckoning;
       break;
   }
+  // Frames that are skipped before the estimator took its first have no state yet.
+  if (!summary_.first_instant && output.status == EstimatorStatus::kDeadReckoning &&
+      output.covariance.size() == 0) {
+    ++summary_.skipped;
+    return;
+  }
   // A frame that the IMU does not cover leaves the state where it was.
   if (summary_.last_instant && output.state.instant <= *summary_.last_instant) {
     ++summary_.skipped;

@@ -208,7 +208,7 @@ Command SimulateCommand() {
                 {.name = "sensors", .value = "FILE"},
                 {.name = "imu", .value = "DIR"},
                 {.name = "images"},
-                {.name = "point_tracks"},
+                {.name = "point-tracks"},
                 {.name = "picture", .value = "S", .without = "the whole data set"},
                 {.name = "config", .value = "FILE", .repeatable = true},
                 {.name = "set", .value = "KEY=VALUE", .repeatable = true},

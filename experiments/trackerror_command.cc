@@ -163,8 +163,8 @@ Command TrackErrorCommand() {
                 {.name = "tracks", .value = "DIR"},
                 {.name = "out", .value = "DIR"},
                 {.name = "cameras", .value = "0|1|0,1", .choices = {"0", "1", "0,1"}},
-                {.name = "edge_distance", .value = "PX"},
-                {.name = "ignore_rolling_shutter"},
+                {.name = "edge-distance", .value = "PX"},
+                {.name = "ignore-rolling-shutter"},
                 {.name = "quiet"}},
       .run = RunTrackError};
 }

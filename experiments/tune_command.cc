@@ -68,11 +68,17 @@ Command TuneCommand() {
           "search.csv; report.yaml is the study that shows what tuning bought on the report's "
           "seeds. docs/studies.md.",
       .example = "duet tune configs/tuning/room.yaml --jobs 2 --out tuned",
-      .flags = {{.name = "out", .value = "DIR", .required = true},
+      .flags = {{.name = "out",
+                 .value = "DIR",
+                 .required = true,
+                 .meaning = "Folder of the search; where it exists, what is in it is not done "
+                            "again."},
                 {.name = "quick"},
-                {.name = "jobs", .value = "N"},
+                {.name = "jobs",
+                 .value = "N",
+                 .meaning = "Runs at once, each a process. Costs a frame want 1."},
                 {.name = "data", .value = "DIR", .without = "beside the file"},
-                {.name = "dry_run"},
+                {.name = "dry-run"},
                 {.name = "quiet"}},
       .operands = "FILE",
       .run = RunTune};

@@ -13,6 +13,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr Timestamp kStart = 1'000'000'000;
 constexpr Timestamp kImuStep = 5'000'000;
@@ -31,6 +32,10 @@ class NotingEstimator : public Estimator {
     calls.push_back("frame");
     imu_before_frame.push_back(last_imu - frames.timestamp);
     output.frame_timestamp = frames.timestamp;
+    if (static_cast<int>(imu_before_frame.size()) <= skips) {
+      output.status = EstimatorStatus::kDeadReckoning;
+      return output;
+    }
     output.state.instant = frames.timestamp;
     output.status = static_cast<int>(imu_before_frame.size()) == fails_at
                         ? EstimatorStatus::kFailed
@@ -42,6 +47,7 @@ class NotingEstimator : public Estimator {
   std::optional<NavState> PredictAt(Timestamp /*t*/) const override { return std::nullopt; }
   const CalibrationLayout& layout() const override { return layout_; }
 
+  int skips = 0;  ///< so many frames, before the first that it takes
   int fails_at = -1;
   std::vector<std::string> calls;
   std::vector<Timestamp> imu_before_frame;  ///< newest sample, against the frame's stamp
@@ -117,6 +123,15 @@ TEST_F(EstimationLoopTest, FramesBeforeTheStartWaitAndAreCounted) {
   EXPECT_EQ(estimator.initialized_at, kStart + summary_.waiting * kFrameStep);
   EXPECT_DOUBLE_EQ(summary_.waited_s, 1e-9 * static_cast<double>(summary_.waiting * kFrameStep));
   EXPECT_THAT(ReadTextFile(folder_ / "features.csv"), HasSubstr("1000000000,initializing,1,0"));
+}
+
+TEST_F(EstimationLoopTest, FramesThatAreSkippedBeforeTheFirstLeaveNoState) {
+  NotingEstimator estimator;
+  estimator.skips = 2;
+  EXPECT_EQ(Run(&estimator, kStart, &summary_), LoopOutcome::kDone);
+  EXPECT_EQ(summary_.skipped, 2);
+  EXPECT_EQ(summary_.first_instant, kStart + 2 * kFrameStep);
+  EXPECT_THAT(ReadTextFile(folder_ / "states.csv"), Not(HasSubstr("\n0,")));
 }
 
 TEST(LateStartTest, IsWarnedOfFromAFifthOfTheFramesOrFiveSeconds) {
