@@ -104,6 +104,10 @@ struct StudyTableOptions {
 [[nodiscard]] StudyTable SummaryTable(const StudyResult& study,
                                       const std::vector<std::string>& metrics);
 
+/// A sentence or a foot in lines that a terminal shows whole (100 columns), the later ones
+/// indented.
+[[nodiscard]] std::string ParagraphText(const std::string& text);
+
 /// For a terminal: aligned, best marked `*`, second `+`.
 [[nodiscard]] std::string TableText(const StudyTable& table);
 /// For programs: title, verdict and foot as lines that begin with '#', one line of column names,

@@ -25,26 +25,6 @@ std::string WithoutBlanksAtEnd(std::string line) {
   return line + "\n";
 }
 
-/// A paragraph of lines that a terminal shows whole.
-std::string Wrapped(const std::string& text) {
-  constexpr std::size_t kWidth = 100;
-  std::string result;
-  std::string line;
-  const auto end_line = [&] {
-    result += WithoutBlanksAtEnd(line);
-    line = "  ";
-  };
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find(' ', at), text.size());
-    const std::string word = text.substr(at, end - at);
-    if (!line.empty() && line != "  " && TextWidth(line) + TextWidth(word) > kWidth) end_line();
-    line += word + " ";
-    at = end + 1;
-  }
-  end_line();
-  return result;
-}
-
 std::string MarkedText(const TableCell& cell) {
   const std::string text = CellText(cell);
   return cell.mark == TableMark::kBest         ? text + " *"
@@ -165,6 +145,25 @@ std::vector<ColumnGroup> ColumnGroups(const StudyTable& table) {
   return groups;
 }
 
+std::string ParagraphText(const std::string& text) {
+  constexpr std::size_t kWidth = 100;
+  std::string result;
+  std::string line;
+  const auto end_line = [&] {
+    result += WithoutBlanksAtEnd(line);
+    line = "  ";
+  };
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::string word = text.substr(at, end - at);
+    if (!line.empty() && line != "  " && TextWidth(line) + TextWidth(word) > kWidth) end_line();
+    line += word + " ";
+    at = end + 1;
+  }
+  end_line();
+  return result;
+}
+
 std::string TableText(const StudyTable& table) {
   const std::vector<std::size_t> width = ColumnWidths(table);
   std::string text = table.title + "\n\n";
@@ -213,9 +212,9 @@ std::string TableText(const StudyTable& table) {
     text += WithoutBlanksAtEnd(line);
   }
   text += "\n";
-  if (!table.verdict.empty()) text += Wrapped(table.verdict) + "\n";
+  if (!table.verdict.empty()) text += ParagraphText(table.verdict) + "\n";
   if (marked) text += "* best, + second\n";
-  for (const std::string& line : table.foot) text += Wrapped(line);
+  for (const std::string& line : table.foot) text += ParagraphText(line);
   return text;
 }
 

@@ -58,7 +58,7 @@ std::vector<std::pair<std::string, std::string>> StudyTexts(const StudyFolder& f
   std::set<std::string> said;
   for (const StudyTable& table : tables) {
     if (!table.verdict.empty() && said.insert(table.verdict).second) {
-      summary += table.verdict + "\n";
+      summary += ParagraphText(table.verdict);
     }
   }
   texts.emplace_back("summary.txt", summary);

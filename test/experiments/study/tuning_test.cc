@@ -183,7 +183,7 @@ TEST(TuningTest, TheRatioFollowsTheMetricsDirection) {
 TEST(TuningTest, ARunWithoutTheObjectiveHasNotFailed) {
   StudyResult result;
   result.runs = {WithMetric("default", "calibration.t_d.error", 0.1), RunOf("a", 1, 0.1)};
-  const TuningTrial& trial = TuningTrials(result, "calibration.t_d.error")[1];
+  const TuningTrial trial = TuningTrials(result, "calibration.t_d.error")[1];
   EXPECT_EQ(trial.failed, 0);
   EXPECT_EQ(trial.without, 1);
   result.runs = {RunOf("default", 1, 0.1)};
