@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Runs the shipped studies, or those that are named, and prints docs/results.md:
 #   test/evidence/studies.sh OUT [--quick] [STUDY[:quick]...] > docs/results.md
-# All of them: an hour on two cores; with --quick a quarter of one. Runs that are there already are not made again.
+# All of them: an hour on two cores; with --quick a third of one. Runs that are there already are not made again.
+# DUET names another program, JOBS how many runs at once (2).
 set -euo pipefail
 out=$1
 shift
