@@ -166,8 +166,9 @@ TEST(StudyPlanTest, TheShippedStudiesAreWhole) {
       EXPECT_EQ(plan.study.name + ".yaml", entry.path().filename());
       EXPECT_FALSE(plan.study.question.empty());
       EXPECT_FALSE(plan.study.metrics.empty());
-      // As many as two cores do within minutes.
-      EXPECT_LE(plan.Distinct().size(), quick ? 100U : 1000U) << entry.path();
+      // A quick one is over within minutes: twelve cells, nine seeds (fewer show nothing after
+      // Holm's correction).
+      EXPECT_LE(plan.Distinct().size(), quick ? 108U : 1000U) << entry.path();
     }
   }
   EXPECT_EQ(studies, 8);
