@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/geometry/rotation_manifold.h"
+#include "common/support/logging.h"
 
 namespace duet {
 namespace {
@@ -11,55 +12,62 @@ namespace {
 constexpr int kRotationNumbers = 4;
 constexpr int kRotationSize = 3;
 
-bool IsRotation(const CalibrationLayout::Entry& entry) {
-  return entry.block == CalibrationBlock::kExtrinsicRotation;
-}
-
-// Calls function(is a rotation, first number, first component, size of the error) block by block.
-template <class Function>
-void ForEachBlockOf(const CalibrationLayout& layout, const CalibrationGroup& group,
-                    const Function& function) {
-  int number = 0;
-  for (int e = group.first_entry; e < group.first_entry + group.entry_count; ++e) {
-    const CalibrationLayout::Entry& entry = layout.entries()[e];
-    function(IsRotation(entry), number, entry.offset - group.offset, entry.size);
-    number += IsRotation(entry) ? kRotationNumbers : entry.size;
-  }
-}
-
 using Rows = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+
+void Append(CalibrationGroup::Part part, CalibrationGroup* group) {
+  part.component = group->tangent_size;
+  part.number = group->ambient_size;
+  if (part.entry != CalibrationGroup::kFilling) group->size += part.size;
+  group->tangent_size += part.size;
+  group->ambient_size += part.is_rotation ? kRotationNumbers : part.size;
+  group->has_rotation = group->has_rotation || part.is_rotation;
+  group->parts.push_back(part);
+}
+
+void Fill(int width, CalibrationGroup* group) {
+  if (group->tangent_size < width) Append({.size = width - group->tangent_size}, group);
+}
 
 }  // namespace
 
-std::vector<CalibrationGroup> GroupCalibration(const CalibrationLayout& layout) {
+std::vector<CalibrationGroup> GroupCalibration(const CalibrationLayout& layout, int pixel_width) {
+  CHECK_GE(pixel_width, kRotationSize);
   std::vector<CalibrationGroup> groups;
-  bool of_imu = false;
   for (int e = 0; e < static_cast<int>(layout.entries().size()); ++e) {
     const CalibrationLayout::Entry& entry = layout.entries()[e];
-    if (groups.empty() || of_imu != IsImuBlock(entry.block)) {
-      of_imu = IsImuBlock(entry.block);
-      groups.push_back({.first_entry = e, .offset = entry.offset});
+    const bool of_imu = IsImuBlock(entry.block);
+    const bool is_rotation = entry.block == CalibrationBlock::kExtrinsicRotation;
+    for (int first = 0; first < entry.size;) {
+      const bool same_kind = !groups.empty() && groups.back().of_imu == of_imu;
+      const int left = of_imu      ? entry.size
+                       : same_kind ? pixel_width - groups.back().tangent_size
+                                   : 0;
+      if (!same_kind || left == 0 || (is_rotation && left < kRotationSize)) {
+        if (same_kind) Fill(pixel_width, &groups.back());
+        groups.push_back({.of_imu = of_imu, .offset = entry.offset + first});
+        continue;
+      }
+      const int size = std::min(left, entry.size - first);
+      Append({.entry = e, .first = first, .size = size, .is_rotation = is_rotation},
+             &groups.back());
+      first += size;
     }
-    CalibrationGroup& group = groups.back();
-    ++group.entry_count;
-    group.size += entry.size;
-    group.ambient_size += IsRotation(entry) ? kRotationNumbers : entry.size;
-    group.has_rotation = group.has_rotation || IsRotation(entry);
   }
+  if (!groups.empty() && !groups.back().of_imu) Fill(pixel_width, &groups.back());
   return groups;
 }
 
 bool CalibrationManifold::Plus(const double* x, const double* delta, double* x_plus_delta) const {
   const RotationManifold rotation;
-  ForEachBlockOf(layout_, group_, [&](bool rotates, int number, int component, int size) {
-    if (rotates) {
+  for (const auto& [entry, first, size, component, number, is_rotation] : group_.parts) {
+    if (is_rotation) {
       rotation.Plus(x + number, delta + component, x_plus_delta + number);
     } else {
       for (int k = 0; k < size; ++k) {
         x_plus_delta[number + k] = x[number + k] + delta[component + k];
       }
     }
-  });
+  }
   return true;
 }
 
@@ -67,27 +75,27 @@ bool CalibrationManifold::PlusJacobian(const double* x, double* jacobian) const 
   const RotationManifold rotation;
   Rows J(jacobian, AmbientSize(), TangentSize());
   J.setZero();
-  ForEachBlockOf(layout_, group_, [&](bool rotates, int number, int component, int size) {
-    if (rotates) {
+  for (const auto& [entry, first, size, component, number, is_rotation] : group_.parts) {
+    if (is_rotation) {
       Eigen::Matrix<double, kRotationNumbers, kRotationSize, Eigen::RowMajor> lift;
       rotation.PlusJacobian(x + number, lift.data());
       J.block<kRotationNumbers, kRotationSize>(number, component) = lift;
     } else {
       J.block(number, component, size, size).setIdentity();
     }
-  });
+  }
   return true;
 }
 
 bool CalibrationManifold::Minus(const double* y, const double* x, double* y_minus_x) const {
   const RotationManifold rotation;
-  ForEachBlockOf(layout_, group_, [&](bool rotates, int number, int component, int size) {
-    if (rotates) {
+  for (const auto& [entry, first, size, component, number, is_rotation] : group_.parts) {
+    if (is_rotation) {
       rotation.Minus(y + number, x + number, y_minus_x + component);
     } else {
       for (int k = 0; k < size; ++k) y_minus_x[component + k] = y[number + k] - x[number + k];
     }
-  });
+  }
   return true;
 }
 
@@ -95,15 +103,15 @@ bool CalibrationManifold::MinusJacobian(const double* x, double* jacobian) const
   const RotationManifold rotation;
   Rows J(jacobian, TangentSize(), AmbientSize());
   J.setZero();
-  ForEachBlockOf(layout_, group_, [&](bool rotates, int number, int component, int size) {
-    if (rotates) {
+  for (const auto& [entry, first, size, component, number, is_rotation] : group_.parts) {
+    if (is_rotation) {
       Eigen::Matrix<double, kRotationSize, kRotationNumbers, Eigen::RowMajor> drop;
       rotation.MinusJacobian(x + number, drop.data());
       J.block<kRotationSize, kRotationNumbers>(component, number) = drop;
     } else {
       J.block(component, number, size, size).setIdentity();
     }
-  });
+  }
   return true;
 }
 

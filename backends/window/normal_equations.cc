@@ -118,12 +118,18 @@ void NormalEquations::AddLandmarkOf(int anchor, std::span<const LinearObservatio
   const int c_size = layout_->size() - skipped;
   const int c = calibration_ + skipped;
 
+  // Products of so few rows are quickest coefficient by coefficient (lazyProduct); the factor that
+  // gives the rows is kept transposed, so that these lie next to one another.
+  using FrameColumns = Eigen::Matrix<double, kSize, 2>;
+  using CalibrationRows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3,
+                                        ReprojectionJacobians::kMaxCalibration>;
   std::array<Eigen::Matrix<double, 3, kSize>, kMaxFrames> W;  // landmark x frame
   std::array<bool, kMaxFrames> seen{};
-  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3,
-                ReprojectionJacobians::kMaxCalibration>
-      W_c(3, c_size);
+  CalibrationRows W_c(3, c_size);
   W_c.setZero();
+  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, ReprojectionJacobians::kMaxCalibration,
+                2>
+      J_c_t(c_size, 2);
   Eigen::Matrix3d V = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b_l = Eigen::Vector3d::Zero();
   const auto see = [&](int frame) {
@@ -138,8 +144,9 @@ void NormalEquations::AddLandmarkOf(int anchor, std::span<const LinearObservatio
     see(f);
     Eigen::Matrix<double, 2, 3> J_l = o.J.landmark;
     if (inverse_depth_only) J_l.template leftCols<2>().setZero();
-    V.noalias() += J_l.transpose() * J_l;
-    b_l.noalias() += J_l.transpose() * o.r;
+    const Eigen::Matrix<double, 3, 2> J_l_t = J_l.transpose();
+    V.noalias() += J_l_t * J_l;
+    b_l.noalias() += J_l_t * o.r;
 
     const auto J_c = o.J.calibration.rightCols(c_size);
     FrameRows J_f = o.J.state.template leftCols<kSize>();
@@ -147,48 +154,50 @@ void NormalEquations::AddLandmarkOf(int anchor, std::span<const LinearObservatio
       J_f.template leftCols<6>() += o.J.anchor;
     } else {
       J_a.template leftCols<6>() = o.J.anchor;
-      W[anchor].noalias() += J_l.transpose() * J_a;
-      H.block<kSize, kSize>(kFrameSize * anchor, kFrameSize * anchor).noalias() +=
-          J_a.transpose() * J_a;
+      const FrameColumns J_a_t = J_a.transpose();
+      W[anchor] += J_l_t.lazyProduct(J_a);
+      H.block<kSize, kSize>(kFrameSize * anchor, kFrameSize * anchor) += J_a_t.lazyProduct(J_a);
       // The anchor is the first frame of its landmark, so this is the upper triangle.
-      H.block<kSize, kSize>(kFrameSize * anchor, kFrameSize * f).noalias() += J_a.transpose() * J_f;
-      b.segment<kSize>(kFrameSize * anchor).noalias() += J_a.transpose() * o.r;
-      if (c_size > 0) {
-        H.block(kFrameSize * anchor, c, kSize, c_size).noalias() += J_a.transpose() * J_c;
-      }
+      H.block<kSize, kSize>(kFrameSize * anchor, kFrameSize * f) += J_a_t.lazyProduct(J_f);
+      b.segment<kSize>(kFrameSize * anchor) += J_a_t.lazyProduct(o.r);
+      H.block(kFrameSize * anchor, c, kSize, c_size) += J_a_t.lazyProduct(J_c);
     }
-    W[f].noalias() += J_l.transpose() * J_f;
-    H.block<kSize, kSize>(kFrameSize * f, kFrameSize * f).noalias() += J_f.transpose() * J_f;
-    b.segment<kSize>(kFrameSize * f).noalias() += J_f.transpose() * o.r;
+    const FrameColumns J_f_t = J_f.transpose();
+    W[f] += J_l_t.lazyProduct(J_f);
+    H.block<kSize, kSize>(kFrameSize * f, kFrameSize * f) += J_f_t.lazyProduct(J_f);
+    b.segment<kSize>(kFrameSize * f) += J_f_t.lazyProduct(o.r);
     if (c_size > 0) {
-      H.block(kFrameSize * f, c, kSize, c_size).noalias() += J_f.transpose() * J_c;
-      H.block(c, c, c_size, c_size).noalias() += J_c.transpose() * J_c;
-      b.segment(c, c_size).noalias() += J_c.transpose() * o.r;
-      W_c.noalias() += J_l.transpose() * J_c;
+      J_c_t = J_c.transpose();
+      H.block(kFrameSize * f, c, kSize, c_size) += J_f_t.lazyProduct(J_c);
+      H.block(c, c, c_size, c_size) += J_c_t.lazyProduct(J_c);
+      b.segment(c, c_size) += J_c_t.lazyProduct(o.r);
+      W_c += J_l_t.lazyProduct(J_c);
     }
   }
 
   // Schur complement of the landmark: with Y = L^-1 W, H -= Y'Y and b -= Y'(L^-1 b_l).
   const Eigen::Matrix3d L_inverse = LandmarkInverseCholesky(V);
   const Eigen::Vector3d y_l = L_inverse * b_l;
-  W_c = L_inverse * W_c;
+  const CalibrationRows Y_c = L_inverse.lazyProduct(W_c);
   for (int f = 0; f < frame_count_; ++f) {
-    if (seen[f]) W[f] = (L_inverse * W[f]).eval();
+    if (seen[f]) W[f] = L_inverse.lazyProduct(W[f]).eval();
   }
   for (int f = 0; f < frame_count_; ++f) {
     if (!seen[f]) continue;
+    const Eigen::Matrix<double, kSize, 3> Y_t = W[f].transpose();
     for (int g = f; g < frame_count_; ++g) {
       if (!seen[g]) continue;
-      H.block<kSize, kSize>(kFrameSize * f, kFrameSize * g).noalias() -= W[f].transpose() * W[g];
+      H.block<kSize, kSize>(kFrameSize * f, kFrameSize * g) -= Y_t.lazyProduct(W[g]);
     }
-    b.segment<kSize>(kFrameSize * f).noalias() -= W[f].transpose() * y_l;
-    if (c_size > 0) {
-      H.block(kFrameSize * f, c, kSize, c_size).noalias() -= W[f].transpose() * W_c;
-    }
+    b.segment<kSize>(kFrameSize * f) -= Y_t.lazyProduct(y_l);
+    H.block(kFrameSize * f, c, kSize, c_size) -= Y_t.lazyProduct(Y_c);
   }
   if (c_size > 0) {
-    H.block(c, c, c_size, c_size).noalias() -= W_c.transpose() * W_c;
-    b.segment(c, c_size).noalias() -= W_c.transpose() * y_l;
+    const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor,
+                        ReprojectionJacobians::kMaxCalibration, 3>
+        Y_c_t = Y_c.transpose();
+    H.block(c, c, c_size, c_size) -= Y_c_t.lazyProduct(Y_c);
+    b.segment(c, c_size) -= Y_c_t.lazyProduct(y_l);
   }
 }
 

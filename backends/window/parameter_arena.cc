@@ -85,13 +85,20 @@ void UnpackBlock(const CalibrationLayout::Entry& e, double* values, RigCalibrati
 void ParameterArena::Resize(int frame_count, int landmark_count) {
   frame_count_ = frame_count;
   int size = kFrameDoubles * frame_count;
-  calibration_.clear();
-  for (const auto& e : layout_->entries()) {
-    calibration_.push_back(size);
-    size += e.block == CalibrationBlock::kExtrinsicRotation ? 4 : e.size;
+  group_numbers_.clear();
+  calibration_.resize(layout_->entries().size());
+  for (const CalibrationGroup& group : groups_) {
+    group_numbers_.push_back(size);
+    for (const CalibrationGroup::Part& part : group.parts) {
+      // An entry goes on in the next group without a gap.
+      if (part.entry != CalibrationGroup::kFilling && part.first == 0) {
+        calibration_[part.entry] = size + part.number;
+      }
+    }
+    size += group.ambient_size;
   }
   landmarks_ = size;
-  values_.resize(size + 3 * landmark_count);
+  values_.assign(size + 3 * landmark_count, 0.0);
   point_.nav.resize(frame_count);
   point_.biases.resize(frame_count);
   frame_lifts_.resize(frame_count);

@@ -12,12 +12,14 @@ using Kind = CostBlock::Kind;
 template <int kRows, int kCols>
 using JacobianMap = Eigen::Map<Eigen::Matrix<double, kRows, kCols, Eigen::RowMajor>>;
 
-// Writes d r / d pose's seven numbers from d r / d (theta, p).
-template <int kRows, class Derived>
+// Writes d r / d the numbers of a pose (with velocity) from d r / d (theta, p(, v)).
+template <class Derived>
 void WritePose(const Eigen::MatrixBase<Derived>& J, const ParameterArena::Lift& lift, double* out) {
-  JacobianMap<kRows, 7> map(out);
+  constexpr int kSize = Derived::ColsAtCompileTime;
+  Eigen::Map<Eigen::Matrix<double, Derived::RowsAtCompileTime, kSize + 1, Eigen::RowMajor>> map(
+      out, J.rows(), kSize + 1);
   map.template leftCols<4>().noalias() = J.template leftCols<3>() * lift;
-  map.template rightCols<3>() = J.template rightCols<3>();
+  map.template rightCols<kSize - 3>() = J.template rightCols<kSize - 3>();
 }
 
 // Writes d r / d a group's numbers from d r / d its error.
@@ -26,17 +28,14 @@ void WriteGroup(const Eigen::MatrixBase<Derived>& J, const CalibrationGroup& gro
                 const SolverContext& context, double* out) {
   Eigen::Map<Eigen::Matrix<double, Derived::RowsAtCompileTime, Eigen::Dynamic, Eigen::RowMajor>>
       map(out, J.rows(), group.ambient_size);
-  int number = 0;
-  for (int e = group.first_entry; e < group.first_entry + group.entry_count; ++e) {
-    const CalibrationLayout::Entry& entry = context.layout->entries()[e];
-    const int component = entry.offset - group.offset;
-    if (entry.block == CalibrationBlock::kExtrinsicRotation) {
-      map.template middleCols<4>(number) =
-          J.template middleCols<3>(component) * context.arena->calibration_lift(e);
-      number += 4;
+  for (const CalibrationGroup::Part& part : group.parts) {
+    if (part.entry == CalibrationGroup::kFilling) {
+      map.middleCols(part.number, part.size).setZero();
+    } else if (part.is_rotation) {
+      map.template middleCols<4>(part.number).noalias() =
+          J.template middleCols<3>(part.component) * context.arena->calibration_lift(part.entry);
     } else {
-      map.middleCols(number, entry.size) = J.middleCols(component, entry.size);
-      number += entry.size;
+      map.middleCols(part.number, part.size) = J.middleCols(part.component, part.size);
     }
   }
 }
@@ -56,18 +55,18 @@ void Declare(const std::vector<CostBlock>& blocks, const SolverContext& context,
 void AddGroups(const SolverContext& context, bool of_imu, std::vector<CostBlock>* blocks) {
   const std::vector<CalibrationGroup>& groups = context.arena->groups();
   for (int g = 0; g < static_cast<int>(groups.size()); ++g) {
-    if (IsImuBlock(context.layout->entries()[groups[g].first_entry].block) == of_imu) {
-      blocks->push_back({Kind::kCalibration, g});
-    }
+    if (groups[g].of_imu == of_imu) blocks->push_back({Kind::kCalibration, g});
   }
 }
 
-// The group that an entry of the layout belongs to.
-int GroupOf(int entry, const SolverContext& context) {
-  const std::vector<CalibrationGroup>& groups = context.arena->groups();
-  int g = 0;
-  while (entry >= groups[g].first_entry + groups[g].entry_count) ++g;
-  return g;
+// A frame's pose and velocity: one block or two.
+void AddPoseAndVelocity(const SolverContext& context, int frame, std::vector<CostBlock>* blocks) {
+  if (context.arena->pose_with_velocity()) {
+    blocks->push_back({Kind::kMotion, frame});
+  } else {
+    blocks->push_back({Kind::kPose, frame});
+    blocks->push_back({Kind::kVelocity, frame});
+  }
 }
 
 }  // namespace
@@ -76,6 +75,7 @@ double* BlockMemory(const CostBlock& block, const SolverContext& context) {
   ParameterArena& arena = *context.arena;
   switch (block.kind) {
     case Kind::kPose:
+    case Kind::kMotion:
       return arena.pose(block.index);
     case Kind::kVelocity:
       return arena.velocity(block.index);
@@ -94,6 +94,8 @@ int BlockSize(const CostBlock& block, const SolverContext& context) {
   switch (block.kind) {
     case Kind::kPose:
       return 7;
+    case Kind::kMotion:
+      return 10;
     case Kind::kVelocity:
       return 3;
     case Kind::kBiases:
@@ -102,6 +104,22 @@ int BlockSize(const CostBlock& block, const SolverContext& context) {
       return context.arena->groups()[block.index].ambient_size;
     case Kind::kLandmark:
       return context.inverse_depth_only ? 1 : 3;
+  }
+  LOG(FATAL) << "unknown kind of block";
+  return 0;
+}
+
+int ErrorSize(const CostBlock& block, const SolverContext& context) {
+  switch (block.kind) {
+    case Kind::kPose:
+    case Kind::kMotion:
+      return BlockSize(block, context) - 1;
+    case Kind::kCalibration:
+      return context.arena->groups()[block.index].tangent_size;
+    case Kind::kVelocity:
+    case Kind::kBiases:
+    case Kind::kLandmark:
+      return BlockSize(block, context);
   }
   LOG(FATAL) << "unknown kind of block";
   return 0;
@@ -118,11 +136,10 @@ void ReprojectionCost::Reset(const SolverContext* context, int landmark_index, i
   blocks_.push_back({Kind::kLandmark, landmark_index});
   // At its own instant the anchor's pose cancels in what the anchor's frame sees.
   const bool same = observation.frame == anchor;
-  if (!same) blocks_.push_back({Kind::kPose, anchor});
-  if (!same || context->reprojection.off_instant) {
-    blocks_.push_back({Kind::kPose, observation.frame});
-  }
-  if (context->reprojection.off_instant) blocks_.push_back({Kind::kVelocity, observation.frame});
+  const bool off_instant = context->reprojection.off_instant;
+  const Kind kind = off_instant ? Kind::kMotion : Kind::kPose;
+  if (!same) blocks_.push_back({kind, anchor});
+  if (!same || off_instant) blocks_.push_back({kind, observation.frame});
   AddGroups(*context, false, &blocks_);
   set_num_residuals(2);
   Declare(blocks_, *context, mutable_parameter_block_sizes(), parameters);
@@ -168,18 +185,23 @@ bool ReprojectionCost::Evaluate(double const* const* parameters, double* residua
         Eigen::Matrix<double, 2, 6> J_pose = Eigen::Matrix<double, 2, 6>::Zero();
         if (block.index == anchor_) J_pose += J.anchor;
         if (block.index == observation_.frame) J_pose += J.state.leftCols<6>();
-        WritePose<2>(J_pose, arena.frame_lift(block.index), jacobians[k]);
+        WritePose(J_pose, arena.frame_lift(block.index), jacobians[k]);
         break;
       }
-      case Kind::kVelocity:
-        JacobianMap<2, 3>{jacobians[k]} = J.state.rightCols<3>();
+      case Kind::kMotion: {
+        Eigen::Matrix<double, 2, 9> J_motion = Eigen::Matrix<double, 2, 9>::Zero();
+        if (block.index == anchor_) J_motion.leftCols<6>() += J.anchor;
+        if (block.index == observation_.frame) J_motion += J.state;
+        WritePose(J_motion, arena.frame_lift(block.index), jacobians[k]);
         break;
+      }
       case Kind::kCalibration: {
         const CalibrationGroup& group = arena.groups()[block.index];
         WriteGroup(J.calibration.middleCols(group.offset, group.size), group, *context_,
                    jacobians[k]);
         break;
       }
+      case Kind::kVelocity:
       case Kind::kBiases:
         break;
     }
@@ -192,8 +214,7 @@ void ImuCost::Reset(const SolverContext* context, int frame, std::vector<double*
   frame_ = frame;
   blocks_.clear();
   for (const int f : {frame - 1, frame}) {
-    blocks_.push_back({Kind::kPose, f});
-    blocks_.push_back({Kind::kVelocity, f});
+    AddPoseAndVelocity(*context, f, &blocks_);
     blocks_.push_back({Kind::kBiases, f});
   }
   AddGroups(*context, true, &blocks_);
@@ -224,7 +245,12 @@ bool ImuCost::Evaluate(double const* const* /*parameters*/, double* residuals,
     switch (block.kind) {
       case Kind::kPose: {
         const Eigen::Matrix<double, 15, 6> J_pose = W * J_state.middleCols<6>(kPoseOffset);
-        WritePose<15>(J_pose, arena.frame_lift(block.index), jacobians[k]);
+        WritePose(J_pose, arena.frame_lift(block.index), jacobians[k]);
+        break;
+      }
+      case Kind::kMotion: {
+        const Eigen::Matrix<double, 15, 9> J_motion = W * J_state.leftCols<9>();
+        WritePose(J_motion, arena.frame_lift(block.index), jacobians[k]);
         break;
       }
       case Kind::kVelocity:
@@ -250,9 +276,13 @@ void StandstillCost::Reset(const SolverContext* context, int frame,
                            std::vector<double*>* parameters) {
   context_ = context;
   frame_ = frame;
+  blocks_.clear();
+  // The velocity of the frame before is not measured.
+  const bool with_velocity = context->arena->pose_with_velocity();
+  blocks_.push_back({with_velocity ? Kind::kMotion : Kind::kPose, frame - 1});
+  AddPoseAndVelocity(*context, frame, &blocks_);
   set_num_residuals(6);
-  Declare({{Kind::kPose, frame - 1}, {Kind::kPose, frame}, {Kind::kVelocity, frame}}, *context,
-          mutable_parameter_block_sizes(), parameters);
+  Declare(blocks_, *context, mutable_parameter_block_sizes(), parameters);
 }
 
 bool StandstillCost::Evaluate(double const* const* /*parameters*/, double* residuals,
@@ -269,14 +299,35 @@ bool StandstillCost::Evaluate(double const* const* /*parameters*/, double* resid
   // s.J are those of the prediction h, the residual is z - h.
   const Eigen::Matrix<double, 6, 9> J_i = -(w.asDiagonal() * s.J_i);
   const Eigen::Matrix<double, 6, 9> J_j = -(w.asDiagonal() * s.J_j);
-  if (jacobians[0] != nullptr) {
-    WritePose<6>(J_i.leftCols<6>(), arena.frame_lift(i), jacobians[0]);
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    if (jacobians[k] == nullptr) continue;
+    const CostBlock& block = blocks_[k];
+    const Eigen::Matrix<double, 6, 9>& J = block.index == i ? J_i : J_j;
+    switch (block.kind) {
+      case Kind::kPose:
+        WritePose(J.leftCols<6>(), arena.frame_lift(block.index), jacobians[k]);
+        break;
+      case Kind::kMotion:
+        WritePose(J, arena.frame_lift(block.index), jacobians[k]);
+        break;
+      case Kind::kVelocity:
+        JacobianMap<6, 3>{jacobians[k]} = J.rightCols<3>();
+        break;
+      case Kind::kBiases:
+      case Kind::kCalibration:
+      case Kind::kLandmark:
+        break;
+    }
   }
-  if (jacobians[1] != nullptr) {
-    WritePose<6>(J_j.leftCols<6>(), arena.frame_lift(j), jacobians[1]);
-  }
-  if (jacobians[2] != nullptr) JacobianMap<6, 3>{jacobians[2]} = J_j.rightCols<3>();
   return true;
+}
+
+void PriorCost::AddColumns(const CostBlock& block, int component, int size, bool is_rotation) {
+  if (blocks_.empty() || blocks_.back().kind != block.kind || blocks_.back().index != block.index) {
+    blocks_.push_back(block);
+  }
+  const int first = columns_.empty() ? 0 : columns_.back().first + columns_.back().size;
+  columns_.push_back({blocks_.size() - 1, component, first, size, is_rotation});
 }
 
 void PriorCost::Reset(const SolverContext* context, const WindowPrior* prior,
@@ -284,24 +335,32 @@ void PriorCost::Reset(const SolverContext* context, const WindowPrior* prior,
   context_ = context;
   prior_ = prior;
   blocks_.clear();
+  columns_.clear();
+  const bool one_block = context->arena->pose_with_velocity();
+  const std::vector<CalibrationGroup>& groups = context->arena->groups();
   for (const PriorBlock& block : prior->blocks) {
     switch (block.kind) {
-      case PriorBlock::Kind::kPose:
-        blocks_.push_back({Kind::kPose, block.index});
-        break;
-      case PriorBlock::Kind::kVelocity:
-        blocks_.push_back({Kind::kVelocity, block.index});
-        break;
-      case PriorBlock::Kind::kBiases:
-        blocks_.push_back({Kind::kBiases, block.index});
-        break;
-      case PriorBlock::Kind::kCalibration: {
-        const CostBlock group{Kind::kCalibration, GroupOf(block.index, *context)};
-        const bool new_group = blocks_.empty() || blocks_.back().kind != Kind::kCalibration ||
-                               blocks_.back().index != group.index;
-        if (new_group) blocks_.push_back(group);
+      case PriorBlock::Kind::kPose: {
+        const CostBlock pose{one_block ? Kind::kMotion : Kind::kPose, block.index};
+        AddColumns(pose, 0, 3, true);
+        AddColumns(pose, 3, 3, false);
         break;
       }
+      case PriorBlock::Kind::kVelocity:
+        AddColumns({one_block ? Kind::kMotion : Kind::kVelocity, block.index}, one_block ? 6 : 0, 3,
+                   false);
+        break;
+      case PriorBlock::Kind::kBiases:
+        AddColumns({Kind::kBiases, block.index}, 0, 6, false);
+        break;
+      case PriorBlock::Kind::kCalibration:
+        for (int g = 0; g < static_cast<int>(groups.size()); ++g) {
+          for (const CalibrationGroup::Part& part : groups[g].parts) {
+            if (part.entry != block.index) continue;
+            AddColumns({Kind::kCalibration, g}, part.component, part.size, part.is_rotation);
+          }
+        }
+        break;
     }
   }
   set_num_residuals(static_cast<int>(prior->root.J.rows()));
@@ -327,44 +386,38 @@ bool PriorCost::Evaluate(double const* const* /*parameters*/, double* residuals,
   r.noalias() += J * deviation_;
   if (jacobians == nullptr) return true;
 
-  // The true Jacobian of a rotation's deviation is the inverse left Jacobian.
-  column = 0;
   std::size_t next = 0;
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const CostBlock& block = blocks_[k];
-    if (block.kind == Kind::kCalibration) {
-      const CalibrationGroup& group = arena.groups()[block.index];
-      group_J_.setZero(J.rows(), group.size);
-      for (; next < prior_->blocks.size(); ++next) {
-        const PriorBlock& part = prior_->blocks[next];
-        if (GroupOf(part.index, *context_) != block.index) break;
-        const CalibrationLayout::Entry& entry = context_->layout->entries()[part.index];
-        auto out = group_J_.middleCols(entry.offset - group.offset, entry.size);
-        if (entry.block == CalibrationBlock::kExtrinsicRotation) {
-          out.noalias() =
-              J.middleCols<3>(column) * LeftJacobianInverse(deviation_.segment<3>(column));
-        } else {
-          out = J.middleCols(column, entry.size);
-        }
-        column += entry.size;
+    block_J_.setZero(J.rows(), ErrorSize(block, *context_));
+    for (; next < columns_.size() && columns_[next].block == k; ++next) {
+      const Columns& c = columns_[next];
+      if (c.is_rotation) {
+        // The true Jacobian of a rotation's deviation is the inverse left Jacobian.
+        block_J_.middleCols<3>(c.component).noalias() =
+            J.middleCols<3>(c.first) * LeftJacobianInverse(deviation_.segment<3>(c.first));
+      } else {
+        block_J_.middleCols(c.component, c.size) = J.middleCols(c.first, c.size);
       }
-      if (jacobians[k] != nullptr) WriteGroup(group_J_, group, *context_, jacobians[k]);
-      continue;
     }
-    const int first = column;
-    const int size = prior_->blocks[next++].size;
-    column += size;
     if (jacobians[k] == nullptr) continue;
-    if (block.kind != Kind::kPose) {
-      JacobianMap<Eigen::Dynamic, Eigen::Dynamic>(jacobians[k], J.rows(), size) =
-          J.middleCols(first, size);
-      continue;
+    switch (block.kind) {
+      case Kind::kPose:
+        WritePose(block_J_.leftCols<6>(), arena.frame_lift(block.index), jacobians[k]);
+        break;
+      case Kind::kMotion:
+        WritePose(block_J_.leftCols<9>(), arena.frame_lift(block.index), jacobians[k]);
+        break;
+      case Kind::kCalibration:
+        WriteGroup(block_J_, arena.groups()[block.index], *context_, jacobians[k]);
+        break;
+      case Kind::kVelocity:
+      case Kind::kBiases:
+      case Kind::kLandmark:
+        JacobianMap<Eigen::Dynamic, Eigen::Dynamic>(jacobians[k], J.rows(), block_J_.cols()) =
+            block_J_;
+        break;
     }
-    const ParameterArena::Lift lift =
-        LeftJacobianInverse(deviation_.segment<3>(first)) * arena.frame_lift(block.index);
-    JacobianMap<Eigen::Dynamic, 7> map(jacobians[k], J.rows(), 7);
-    map.leftCols<4>().noalias() = J.middleCols<3>(first) * lift;
-    map.rightCols<3>() = J.middleCols<3>(first + 3);
   }
   return true;
 }

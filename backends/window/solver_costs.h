@@ -26,7 +26,8 @@ struct SolverContext {
 
 /// A parameter block of a cost, and which columns of its Jacobian over errors belong to it.
 struct CostBlock {
-  enum class Kind { kPose, kVelocity, kBiases, kCalibration, kLandmark };
+  /// kMotion: pose and velocity in one (ParameterArena).
+  enum class Kind { kPose, kVelocity, kMotion, kBiases, kCalibration, kLandmark };
   Kind kind;
   int index;  ///< frame, group of the calibration, or landmark of the arena
 };
@@ -34,6 +35,8 @@ struct CostBlock {
 /// Adds a block's memory and size to a cost function's lists.
 [[nodiscard]] double* BlockMemory(const CostBlock& block, const SolverContext& context);
 [[nodiscard]] int BlockSize(const CostBlock& block, const SolverContext& context);
+/// Components of its error.
+[[nodiscard]] int ErrorSize(const CostBlock& block, const SolverContext& context);
 
 /// A pixel of a landmark (2 residuals). Pooled: Reset makes it another's.
 class ReprojectionCost final : public ceres::CostFunction {
@@ -76,6 +79,7 @@ class StandstillCost final : public ceres::CostFunction {
  private:
   const SolverContext* context_ = nullptr;
   int frame_ = 0;
+  std::vector<CostBlock> blocks_;
 };
 
 /// What is known from all that left the window (WindowPrior). Its Jacobian is the true one at the
@@ -88,12 +92,24 @@ class PriorCost final : public ceres::CostFunction {
                 double** jacobians) const override;
 
  private:
+  /// Neighbouring columns of the prior's J, and where they belong.
+  struct Columns {
+    std::size_t block;  // of blocks_
+    int component;      // of the block's error
+    int first;          // of J
+    int size;
+    bool is_rotation;
+  };
+  /// The next columns of J, as components of a block's error.
+  void AddColumns(const CostBlock& block, int component, int size, bool is_rotation);
+
   const SolverContext* context_ = nullptr;
   const WindowPrior* prior_ = nullptr;
   std::vector<CostBlock> blocks_;
+  std::vector<Columns> columns_;              // in the order of the blocks
   mutable Eigen::VectorXd window_deviation_;  // scratch
   mutable Eigen::VectorXd deviation_;         // scratch
-  mutable Eigen::MatrixXd group_J_;           // scratch
+  mutable Eigen::MatrixXd block_J_;           // scratch
 };
 
 }  // namespace duet

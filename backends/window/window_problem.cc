@@ -20,6 +20,16 @@ ceres::Problem::Options ProblemOptions(ParameterArena* arena) {
   return options;
 }
 
+// Of (theta, p), or of (theta, p, v).
+std::unique_ptr<ceres::Manifold> MakePoseManifold(bool with_velocity) {
+  if (with_velocity) {
+    return std::make_unique<ceres::ProductManifold<RotationManifold, ceres::EuclideanManifold<6>>>(
+        RotationManifold(), ceres::EuclideanManifold<6>());
+  }
+  return std::make_unique<ceres::ProductManifold<RotationManifold, ceres::EuclideanManifold<3>>>(
+      RotationManifold(), ceres::EuclideanManifold<3>());
+}
+
 // The next cost of a pool; the pool grows where it is used up.
 template <class Cost>
 Cost* Next(std::vector<std::unique_ptr<Cost>>* pool, std::size_t* used) {
@@ -45,13 +55,11 @@ WindowProblem::WindowProblem(const WindowOptions& options, const ReprojectionSet
                              const StandstillOptions& standstill, const CalibrationLayout& layout)
     : options_(options),
       layout_(layout),
-      arena_(layout),
-      pose_(std::make_unique<ceres::ProductManifold<RotationManifold, ceres::EuclideanManifold<3>>>(
-          RotationManifold(), ceres::EuclideanManifold<3>())),
+      arena_(layout, reprojection.off_instant),
+      pose_(MakePoseManifold(reprojection.off_instant)),
       loss_(MakeLoss(options)) {
   for (const CalibrationGroup& group : arena_.groups()) {
-    groups_.push_back(group.has_rotation ? std::make_unique<CalibrationManifold>(layout, group)
-                                         : nullptr);
+    groups_.push_back(group.has_rotation ? std::make_unique<CalibrationManifold>(group) : nullptr);
   }
   context_.arena = &arena_;
   context_.layout = &layout;
@@ -63,8 +71,8 @@ WindowProblem::WindowProblem(const WindowOptions& options, const ReprojectionSet
 
 void WindowProblem::AddParameters(const std::vector<Landmark>& landmarks) {
   for (int i = 0; i < frame_count_; ++i) {
-    problem_->AddParameterBlock(arena_.pose(i), 7, pose_.get());
-    problem_->AddParameterBlock(arena_.velocity(i), 3);
+    problem_->AddParameterBlock(arena_.pose(i), pose_->AmbientSize(), pose_.get());
+    if (!arena_.pose_with_velocity()) problem_->AddParameterBlock(arena_.velocity(i), 3);
     problem_->AddParameterBlock(arena_.biases(i), 6);
   }
   for (int g = 0; g < static_cast<int>(arena_.groups().size()); ++g) {
@@ -148,7 +156,7 @@ SolveSummary WindowProblem::Solve() {
   }
   for (int i = 0; i < frame_count_; ++i) {
     ordering->AddElementToGroup(arena_.pose(i), 1);
-    ordering->AddElementToGroup(arena_.velocity(i), 1);
+    if (!arena_.pose_with_velocity()) ordering->AddElementToGroup(arena_.velocity(i), 1);
     ordering->AddElementToGroup(arena_.biases(i), 1);
   }
   for (int g = 0; g < static_cast<int>(arena_.groups().size()); ++g) {

@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -78,17 +79,29 @@ void Frames(benchmark::State& state, const std::string& name, const Sequence& se
   std::unique_ptr<Estimator> estimator;
   std::size_t next = sequence.frames.size();
   double used = 0.0;
+  StageTimer timer;
+  std::map<std::string, double> stages;
+  double iterations = 0.0;
   for (auto _ : state) {
     if (next == sequence.frames.size()) {
       state.PauseTiming();
       estimator = MakeEstimator(name, sequence.setup, options);
+      estimator->set_stage_timer(&timer);
       for (const ImuSample& sample : sequence.imu) estimator->AddImu(sample);
       estimator->Initialize({sequence.start, StartCovariance()});
       next = 0;
       state.ResumeTiming();
     }
-    used += estimator->ProcessFrame(sequence.frames[next++]).features.used;
+    timer.StartFrame();
+    const EstimatorOutput& output = estimator->ProcessFrame(sequence.frames[next++]);
+    used += output.features.used;
+    iterations += output.iterations;
+    for (const StageTimer::Stage& s : timer.stages()) stages[s.name] += s.cpu_ms;
   }
+  for (const auto& [stage, ms] : stages) {
+    state.counters[stage] = benchmark::Counter(ms, benchmark::Counter::kAvgIterations);
+  }
+  state.counters["iterations"] = benchmark::Counter(iterations, benchmark::Counter::kAvgIterations);
   state.counters["landmarks"] = benchmark::Counter(used, benchmark::Counter::kAvgIterations);
 }
 
