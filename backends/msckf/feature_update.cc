@@ -1,6 +1,7 @@
 #include "backends/msckf/feature_update.h"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "backends/msckf/compression.h"
 #include "backends/msckf/nullspace.h"
@@ -8,6 +9,10 @@
 
 namespace duet {
 namespace {
+
+/// Up to so many rows a column the update is cheaper than to compress first, with H P' from the
+/// rows as they are before the projection (counted in multiplications).
+constexpr double kMaxUncompressed = 1.25;
 
 /// Rows of the residual after the projection of one landmark, at most.
 int MaxDegreesOfFreedom(const EstimatorSetup& setup, const MsckfOptions& options) {
@@ -107,12 +112,48 @@ bool FeatureUpdate::HasDepth(const Candidate& candidate) {
          rho * rho > options_.min_depth_sigmas * options_.min_depth_sigmas * covariance(2, 2);
 }
 
-void FeatureUpdate::ProjectOne(const Candidate& candidate) {
+void FeatureUpdate::MultiplyOne(const FilterState& state, const Candidate& candidate) {
   const int count = 2 * candidate.observation_count;
+  const int size = state.clone_size();
+  const auto rows = rows_.middleRows(candidate.first_row, count);
+  // As columns of P H', which lie next to one another.
+  const Eigen::Ref<const Eigen::MatrixXd> P = state.P();
+  const auto n = P.rows();
+  Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>> P_H(&HP_(candidate.first_row, 0), n, count,
+                                                           Eigen::OuterStride<>(HP_.cols()));
+  const int anchor = candidate.anchor_clone;
+  H_columns_ = rows.middleCols(columns_.CloneColumn(anchor), size).transpose();
+  P_H.noalias() = P.middleCols(state.CloneOffset(anchor), size) * H_columns_;
+  const int calibration = columns_.CloneColumn(static_cast<int>(state.clones().size()));
+  if (const int width = columns_.width() - calibration; width > 0) {
+    H_columns_ = rows.middleCols(calibration, width).transpose();
+    P_H.noalias() += P.middleCols(columns_.components()[calibration], width) * H_columns_;
+  }
+  const std::span<const CloneObservation> observations = ObservationsOf(candidate);
+  for (int k = 0; k < candidate.observation_count; ++k) {
+    const int clone = observations[k].clone;
+    if (clone == anchor) continue;
+    const auto add = [&]<int kSize>(std::integral_constant<int, kSize>) {
+      const Eigen::Matrix<double, kSize, 2> H_k =
+          rows.block<2, kSize>(2 * k, columns_.CloneColumn(clone)).transpose();
+      P_H.middleCols<2>(2 * k) += P.middleCols<kSize>(state.CloneOffset(clone)).lazyProduct(H_k);
+    };
+    if (size == 9) {
+      add(std::integral_constant<int, 9>());
+    } else {
+      add(std::integral_constant<int, 6>());
+    }
+  }
+}
+
+void FeatureUpdate::ProjectOne(const FilterState& state, const Candidate& candidate) {
+  const int count = 2 * candidate.observation_count;
+  if (product_known_) MultiplyOne(state, candidate);
+  const auto H_f = H_f_.middleRows(candidate.first_row, count);
   // The anchor is the oldest clone that saw the landmark: columns before it are zero.
-  duet::ProjectNullspace(H_f_.middleRows(candidate.first_row, count),
-                         rows_.middleRows(candidate.first_row, count),
+  duet::ProjectNullspace(H_f, rows_.middleRows(candidate.first_row, count),
                          columns_.CloneColumn(candidate.anchor_clone), columns_.width());
+  if (product_known_) ApplyProjection(H_f, HP_.middleRows(candidate.first_row, count));
 }
 
 void FeatureUpdate::Triangulate(const FilterState& state, FeatureTracks* tracks,
@@ -152,8 +193,14 @@ void FeatureUpdate::Linearize(const FilterState& state, FeatureTracks* tracks,
   });
 }
 
-void FeatureUpdate::ProjectNullspace() {
-  for (const Candidate& candidate : candidates_) ProjectOne(candidate);
+void FeatureUpdate::ProjectNullspace(const FilterState& state) {
+  int row_count = 0;
+  for (const Candidate& candidate : candidates_) row_count += 2 * candidate.observation_count - 3;
+  product_known_ = row_count <= kMaxUncompressed * columns_.width();
+  if (product_known_ && (HP_.rows() < rows_.rows() || HP_.cols() != state.size())) {
+    HP_.resize(std::max(rows_.rows(), HP_.rows()), state.size());
+  }
+  for (const Candidate& candidate : candidates_) ProjectOne(state, candidate);
 }
 
 bool FeatureUpdate::PassesGate(const Candidate& candidate) {
@@ -190,7 +237,7 @@ bool FeatureUpdate::RemoveOutliers(const FilterState& state, Candidate* candidat
       !LinearizeOne(state, *candidate) || !HasDepth(*candidate)) {
     return false;
   }
-  ProjectOne(*candidate);
+  ProjectOne(state, *candidate);
   return true;
 }
 
@@ -226,9 +273,23 @@ Eigen::Ref<const Eigen::MatrixXd> FeatureUpdate::Compress() {
     stack_.middleRows(row, count) = rows_.middleRows(candidate.first_row + 3, count);
     row += count;
   }
+  shape_ = MeasurementShape::kFull;
+  if (product_known_) return stack_;
   const int remaining = duet::Compress(stack_);
-  shape_ = remaining < row_count ? MeasurementShape::kUpperTriangular : MeasurementShape::kFull;
+  if (remaining < row_count) shape_ = MeasurementShape::kUpperTriangular;
   return stack_.topRows(remaining);
+}
+
+bool FeatureUpdate::TakeProduct(Eigen::MatrixXd* P_H) const {
+  if (!product_known_) return false;
+  P_H->resize(HP_.cols(), stack_.rows());
+  Eigen::Index column = 0;
+  for (const Candidate& candidate : candidates_) {
+    const int count = 2 * candidate.observation_count - 3;
+    P_H->middleCols(column, count) = HP_.middleRows(candidate.first_row + 3, count).transpose();
+    column += count;
+  }
+  return true;
 }
 
 }  // namespace duet

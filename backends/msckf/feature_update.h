@@ -39,16 +39,23 @@ class FeatureUpdate {
   /// noise, and what follows from it is wrong and overconfident.
   void Linearize(const FilterState& state, FeatureTracks* tracks, FeatureCounts* counts);
 
-  /// 6.5.2: three rows a landmark go.
-  void ProjectNullspace();
+  /// 6.5.2: three rows a landmark go. Before it a row has few entries (the anchor, the observing
+  /// clone, the calibration), after it many: so where Compress will leave the rows as they are, P
+  /// H' is made of them here, and projected with them.
+  void ProjectNullspace(const FilterState& state);
 
   /// 6.5.3: refuses landmarks by the chi-squared test; one that fails because of single pixels is
   /// used without them (MsckfOptions::remove_outliers). Uses up the observations of both kinds.
   void Gate(const FilterState& state, FeatureTracks* tracks, FeatureCounts* counts);
 
   /// 6.30 to 6.32: the measurements that remain, [H | r] of unit noise; no rows where there are
-  /// none. Valid until the next call.
+  /// none. Valid until the next call. Not compressed are stacks that have hardly more rows than
+  /// columns: there the update itself is cheaper.
   [[nodiscard]] Eigen::Ref<const Eigen::MatrixXd> Compress();
+
+  /// Where P H' of what Compress returned is known: writes it, as long as P has not changed since
+  /// ProjectNullspace. Else false.
+  [[nodiscard]] bool TakeProduct(Eigen::MatrixXd* P_H) const;
 
   /// Of what Compress returned.
   [[nodiscard]] MeasurementShape shape() const { return shape_; }
@@ -73,7 +80,9 @@ class FeatureUpdate {
   [[nodiscard]] TriangulationStatus TriangulateOne(const FilterState& state, Candidate* candidate);
   [[nodiscard]] bool LinearizeOne(const FilterState& state, const Candidate& candidate);
   [[nodiscard]] bool HasDepth(const Candidate& candidate);
-  void ProjectOne(const Candidate& candidate);
+  void ProjectOne(const FilterState& state, const Candidate& candidate);
+  /// H P of a landmark's rows before the projection, into HP_.
+  void MultiplyOne(const FilterState& state, const Candidate& candidate);
   [[nodiscard]] bool PassesGate(const Candidate& candidate);
   /// Leaves out what contradicts the rest and takes the landmark through the steps once more, up to
   /// the projection. False where that is not possible.
@@ -91,6 +100,9 @@ class FeatureUpdate {
   std::vector<TrackObservationInState> in_states_;  // one landmark's
   LandmarkRows H_f_;
   MeasurementRows rows_;
+  bool product_known_ = false;
+  MeasurementRows HP_;          // beside rows_, where the product is known
+  Eigen::MatrixXd H_columns_;   // scratch
   std::vector<int> outliers_;   // of one landmark
   Eigen::MatrixXd P_measured_;  // covariance of the measured components
   Eigen::MatrixXd stack_;

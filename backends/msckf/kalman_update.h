@@ -33,4 +33,13 @@ enum class MeasurementShape {
                                 Eigen::Ref<Eigen::VectorXd> dx, KalmanWorkspace* workspace,
                                 MeasurementShape shape = MeasurementShape::kFull);
 
+/// The same where P H' is known: the caller has put it into workspace->P_H (n x rows), which is
+/// used up.
+[[nodiscard]] bool KalmanUpdateOfKnownProduct(const Eigen::Ref<const Eigen::MatrixXd>& H_r,
+                                              std::span<const int> columns,
+                                              Eigen::Ref<Eigen::MatrixXd> P,
+                                              Eigen::Ref<Eigen::VectorXd> dx,
+                                              KalmanWorkspace* workspace,
+                                              MeasurementShape shape = MeasurementShape::kFull);
+
 }  // namespace duet

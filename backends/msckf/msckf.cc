@@ -151,7 +151,7 @@ void Msckf::UpdateStandstill(const TrackFrameSet& frames) {
   std::iota(components.begin() + kPrevious, components.end(), 0);
   const Eigen::MatrixXd P = Eigen::MatrixXd(state_.P())(components, components);
   if (!standstill_gate_.Passes(H_r.leftCols(H_r.cols() - 1), H_r.rightCols<1>(), P)) return;
-  ApplyUpdate(H_r, components, MeasurementShape::kFull);
+  ApplyUpdate(H_r, components, MeasurementShape::kFull, false);
   output_.standstill = true;
 }
 
@@ -175,7 +175,7 @@ void Msckf::Linearize() {
 
 void Msckf::ProjectNullspace() {
   const StageTimer::Scope scope(timer_, "nullspace");
-  feature_update_.ProjectNullspace();
+  feature_update_.ProjectNullspace(state_);
 }
 
 void Msckf::Gate() {
@@ -191,14 +191,16 @@ void Msckf::Compress() {
 void Msckf::Update() {
   const StageTimer::Scope scope(timer_, "update");
   if (stack_->rows() == 0) return;
-  const VisualColumns& columns = feature_update_.columns();
-  ApplyUpdate(*stack_, columns.components(), feature_update_.shape());
+  ApplyUpdate(*stack_, feature_update_.columns().components(), feature_update_.shape(),
+              feature_update_.TakeProduct(&kalman_workspace_.P_H));
 }
 
 void Msckf::ApplyUpdate(const Eigen::Ref<const Eigen::MatrixXd>& H_r,
-                        std::span<const int> components, MeasurementShape shape) {
+                        std::span<const int> components, MeasurementShape shape,
+                        bool product_known) {
   dx_.resize(state_.size());
-  if (!KalmanUpdate(H_r, components, state_.P(), dx_, &kalman_workspace_, shape)) {
+  const auto& update = product_known ? KalmanUpdateOfKnownProduct : KalmanUpdate;
+  if (!update(H_r, components, state_.P(), dx_, &kalman_workspace_, shape)) {
     Fail("the covariance is not positive definite");
     return;
   }

@@ -56,8 +56,9 @@ class Msckf final : public Estimator {
   const EstimatorOutput& Report();
 
   /// The Kalman update and the correction of the state; fails the filter where it can't.
+  /// `product_known`: P H' is in the workspace.
   void ApplyUpdate(const Eigen::Ref<const Eigen::MatrixXd>& H_r, std::span<const int> components,
-                   MeasurementShape shape);
+                   MeasurementShape shape, bool product_known);
   void RefreshRates();
   void CheckHealth();
   void Fail(const std::string& reason);

@@ -27,6 +27,19 @@ double Reflect(LandmarkRowsRef H_f, int j) {
   return beta;
 }
 
+/// I - beta v v', v = (1, tail of column j of H_f), on the columns [first, first + width) of
+/// `rows`.
+void Apply(const LandmarkRowsRef& H_f, int j, double beta, Eigen::Index first, Eigen::Index width,
+           MeasurementRowsRef rows) {
+  const auto m = rows.rows();
+  // s = v' rows, kept in the row that the reflection uses up less beta s.
+  auto head = rows.row(j).segment(first, width);
+  for (Eigen::Index i = j + 1; i < m; ++i) head += H_f(i, j) * rows.row(i).segment(first, width);
+  for (Eigen::Index i = j + 1; i < m; ++i) {
+    rows.row(i).segment(first, width) -= (beta * H_f(i, j)) * head;
+  }
+}
+
 }  // namespace
 
 void ProjectNullspace(LandmarkRowsRef H_f, MeasurementRowsRef rows, int first_column,
@@ -34,23 +47,19 @@ void ProjectNullspace(LandmarkRowsRef H_f, MeasurementRowsRef rows, int first_co
   CHECK_GT(H_f.rows(), 3);
   CHECK_EQ(H_f.rows(), rows.rows());
   const double beta[3] = {Reflect(H_f, 0), Reflect(H_f, 1), Reflect(H_f, 2)};
-  const auto m = rows.rows();
-  const auto residual = rows.cols() - 1;
-  const auto width = last_column - first_column;
   for (int j = 0; j < 3; ++j) {
     if (beta[j] == 0.0) continue;
-    // s = v' rows, kept in the row that the reflection uses up less beta s.
-    auto head = rows.row(j).segment(first_column, width);
-    double head_r = rows(j, residual);
-    for (Eigen::Index i = j + 1; i < m; ++i) {
-      head += H_f(i, j) * rows.row(i).segment(first_column, width);
-      head_r += H_f(i, j) * rows(i, residual);
-    }
-    for (Eigen::Index i = j + 1; i < m; ++i) {
-      const double factor = beta[j] * H_f(i, j);
-      rows.row(i).segment(first_column, width) -= factor * head;
-      rows(i, residual) -= factor * head_r;
-    }
+    Apply(H_f, j, beta[j], first_column, last_column - first_column, rows);
+    Apply(H_f, j, beta[j], rows.cols() - 1, 1, rows);
+  }
+}
+
+void ApplyProjection(const LandmarkRowsRef& H_f, MeasurementRowsRef rows) {
+  CHECK_EQ(H_f.rows(), rows.rows());
+  for (int j = 0; j < 3; ++j) {
+    const double tail_norm2 = H_f.col(j).tail(H_f.rows() - j - 1).squaredNorm();
+    if (tail_norm2 == 0.0) continue;
+    Apply(H_f, j, 2.0 / (1.0 + tail_norm2), 0, rows.cols(), rows);
   }
 }
 

@@ -24,4 +24,8 @@ void ProjectNullspace(LandmarkRowsRef H_f, MeasurementRowsRef rows, int first_co
 /// The same over all columns.
 void ProjectNullspace(LandmarkRowsRef H_f, MeasurementRowsRef rows);
 
+/// The same projection of what else has a row for each of the measurements, after ProjectNullspace
+/// with what it left in `H_f`.
+void ApplyProjection(const LandmarkRowsRef& H_f, MeasurementRowsRef rows);
+
 }  // namespace duet
