@@ -146,14 +146,64 @@ void FeatureUpdate::MultiplyOne(const FilterState& state, const Candidate& candi
   }
 }
 
-void FeatureUpdate::ProjectOne(const FilterState& state, const Candidate& candidate) {
+void FeatureUpdate::GatherCovariance(const FilterState& state) {
+  if (candidates_.empty()) return;
+  const int width = columns_.width();
+  const std::span<const int> components = columns_.components();
+  const Eigen::Ref<const Eigen::MatrixXd> P = state.P();
+  P_measured_.resize(width, width);
+  for (int j = 0; j < width; ++j) {
+    for (int i = 0; i < width; ++i) P_measured_(i, j) = P(components[i], components[j]);
+  }
+}
+
+bool FeatureUpdate::HasSecondOrderNoise(const FilterState& state, const Candidate& candidate) {
+  if (!options_.second_order_noise) return false;
   const int count = 2 * candidate.observation_count;
-  if (product_known_) MultiplyOne(state, candidate);
-  const auto H_f = H_f_.middleRows(candidate.first_row, count);
+  const int first = columns_.CloneColumn(candidate.anchor_clone);
+  const int width = columns_.width() - first;
+  const auto H = rows_.block(candidate.first_row, first, count, width);
+  const auto P = P_measured_.bottomRightCorner(width, width);
+  const double rho = candidate.landmark.z();
+  second_order_.SetDepth(H, H_f_.middleRows(candidate.first_row, count), P);
+  if (!second_order_.Matters(rho, options_.max_landmarks_per_update)) return false;
+  H_f_at_infinity_.resize(count, 3);
+  rows_at_infinity_.resize(count, rows_.cols());
+  const InverseDepth at_infinity(candidate.landmark.x(), candidate.landmark.y(), 0.0);
+  if (!LinearizeLandmark(state, columns_, settings_, candidate.anchor_clone, at_infinity,
+                         ObservationsOf(candidate), H_f_at_infinity_, rows_at_infinity_)) {
+    return false;
+  }
+  return second_order_.SetDerivative(H, rows_at_infinity_.middleCols(first, width), rho, P,
+                                     options_.max_landmarks_per_update);
+}
+
+void FeatureUpdate::WhitenOne(Candidate* candidate) {
+  const int count = 2 * candidate->observation_count;
+  candidate->noise_factor = noise_factor_count_++;
+  if (noise_factor_count_ > static_cast<int>(noise_factors_.size())) noise_factors_.emplace_back();
+  Eigen::MatrixXd& factor = noise_factors_[candidate->noise_factor];
+  factor = second_order_.factor();
+  const auto L = factor.triangularView<Eigen::Lower>();
+  auto H_f = H_f_.middleRows(candidate->first_row, count);
+  auto rows = rows_.middleRows(candidate->first_row, count);
+  L.solveInPlace(H_f);
+  L.solveInPlace(rows);
+  if (!product_known_) return;
+  auto HP = HP_.middleRows(candidate->first_row, count);
+  L.solveInPlace(HP);
+}
+
+void FeatureUpdate::ProjectOne(const FilterState& state, Candidate* candidate) {
+  const int count = 2 * candidate->observation_count;
+  if (product_known_) MultiplyOne(state, *candidate);
+  candidate->noise_factor = -1;
+  if (HasSecondOrderNoise(state, *candidate)) WhitenOne(candidate);
+  const auto H_f = H_f_.middleRows(candidate->first_row, count);
   // The anchor is the oldest clone that saw the landmark: columns before it are zero.
-  duet::ProjectNullspace(H_f, rows_.middleRows(candidate.first_row, count),
-                         columns_.CloneColumn(candidate.anchor_clone), columns_.width());
-  if (product_known_) ApplyProjection(H_f, HP_.middleRows(candidate.first_row, count));
+  duet::ProjectNullspace(H_f, rows_.middleRows(candidate->first_row, count),
+                         columns_.CloneColumn(candidate->anchor_clone), columns_.width());
+  if (product_known_) ApplyProjection(H_f, HP_.middleRows(candidate->first_row, count));
 }
 
 void FeatureUpdate::Triangulate(const FilterState& state, FeatureTracks* tracks,
@@ -173,6 +223,7 @@ void FeatureUpdate::Triangulate(const FilterState& state, FeatureTracks* tracks,
 void FeatureUpdate::Linearize(const FilterState& state, FeatureTracks* tracks,
                               FeatureCounts* counts) {
   columns_.Assign(state);
+  noise_factor_count_ = 0;
   const int width = columns_.width() + 1;
   const auto row_count = static_cast<Eigen::Index>(2 * observations_.size());
   if (H_f_.rows() < row_count) H_f_.resize(row_count, 3);
@@ -196,11 +247,12 @@ void FeatureUpdate::Linearize(const FilterState& state, FeatureTracks* tracks,
 void FeatureUpdate::ProjectNullspace(const FilterState& state) {
   int row_count = 0;
   for (const Candidate& candidate : candidates_) row_count += 2 * candidate.observation_count - 3;
+  if (options_.gate || options_.second_order_noise) GatherCovariance(state);
   product_known_ = row_count <= kMaxUncompressed * columns_.width();
   if (product_known_ && (HP_.rows() < rows_.rows() || HP_.cols() != state.size())) {
     HP_.resize(std::max(rows_.rows(), HP_.rows()), state.size());
   }
-  for (const Candidate& candidate : candidates_) ProjectOne(state, candidate);
+  for (Candidate& candidate : candidates_) ProjectOne(state, &candidate);
 }
 
 bool FeatureUpdate::PassesGate(const Candidate& candidate) {
@@ -216,10 +268,11 @@ bool FeatureUpdate::RemoveOutliers(const FilterState& state, Candidate* candidat
   const int first = columns_.CloneColumn(candidate->anchor_clone);
   const int count = candidate->observation_count;
   const auto block = rows_.middleRows(candidate->first_row + 3, 2 * count - 3);
-  if (!outlier_search_.Find(H_f_.middleRows(candidate->first_row, 2 * count),
-                            block.middleCols(first, width - first), block.col(width),
-                            P_measured_.bottomRightCorner(width - first, width - first), gate_,
-                            std::min(count / 4, count - options_.min_observations), &outliers_)) {
+  if (!outlier_search_.Find(
+          H_f_.middleRows(candidate->first_row, 2 * count), block.middleCols(first, width - first),
+          block.col(width), P_measured_.bottomRightCorner(width - first, width - first), gate_,
+          candidate->noise_factor < 0 ? nullptr : &noise_factors_[candidate->noise_factor],
+          std::min(count / 4, count - options_.min_observations), &outliers_)) {
     return false;
   }
   const std::span<CloneObservation> observations = ObservationsOf(*candidate);
@@ -237,20 +290,11 @@ bool FeatureUpdate::RemoveOutliers(const FilterState& state, Candidate* candidat
       !LinearizeOne(state, *candidate) || !HasDepth(*candidate)) {
     return false;
   }
-  ProjectOne(state, *candidate);
+  ProjectOne(state, candidate);
   return true;
 }
 
 void FeatureUpdate::Gate(const FilterState& state, FeatureTracks* tracks, FeatureCounts* counts) {
-  const int width = columns_.width();
-  const std::span<const int> components = columns_.components();
-  if (options_.gate && !candidates_.empty()) {
-    const Eigen::Ref<const Eigen::MatrixXd> P = state.P();
-    P_measured_.resize(width, width);
-    for (int j = 0; j < width; ++j) {
-      for (int i = 0; i < width; ++i) P_measured_(i, j) = P(components[i], components[j]);
-    }
-  }
   KeepUnless(&candidates_, [&](Candidate& candidate) {
     tracks->Consume(candidate.track);
     bool passes = !options_.gate || PassesGate(candidate);

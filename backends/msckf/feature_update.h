@@ -12,6 +12,7 @@
 #include "backends/msckf/linearization.h"
 #include "backends/msckf/msckf_options.h"
 #include "backends/msckf/outlier_search.h"
+#include "backends/msckf/second_order_noise.h"
 #include "common/measurement/triangulation.h"
 
 namespace duet {
@@ -70,6 +71,7 @@ class FeatureUpdate {
     int observation_count = 0;
     int first_row = 0;  // into rows_ and H_f_
     int anchor_clone = 0;
+    int noise_factor = -1;  // into noise_factors_, where it has noise of second order
     InverseDepth landmark = InverseDepth::Zero();
   };
 
@@ -80,7 +82,14 @@ class FeatureUpdate {
   [[nodiscard]] TriangulationStatus TriangulateOne(const FilterState& state, Candidate* candidate);
   [[nodiscard]] bool LinearizeOne(const FilterState& state, const Candidate& candidate);
   [[nodiscard]] bool HasDepth(const Candidate& candidate);
-  void ProjectOne(const FilterState& state, const Candidate& candidate);
+  void ProjectOne(const FilterState& state, Candidate* candidate);
+  /// P of what the columns act on, from the filter's.
+  void GatherCovariance(const FilterState& state);
+  /// The noise of second order of a landmark's rows before the projection (second_order_noise.h),
+  /// into second_order_. False where it is too small to matter.
+  [[nodiscard]] bool HasSecondOrderNoise(const FilterState& state, const Candidate& candidate);
+  /// Makes the landmark's rows of unit variance where they have noise of second order.
+  void WhitenOne(Candidate* candidate);
   /// H P of a landmark's rows before the projection, into HP_.
   void MultiplyOne(const FilterState& state, const Candidate& candidate);
   [[nodiscard]] bool PassesGate(const Candidate& candidate);
@@ -101,8 +110,13 @@ class FeatureUpdate {
   LandmarkRows H_f_;
   MeasurementRows rows_;
   bool product_known_ = false;
-  MeasurementRows HP_;          // beside rows_, where the product is known
-  Eigen::MatrixXd H_columns_;   // scratch
+  MeasurementRows HP_;             // beside rows_, where the product is known
+  Eigen::MatrixXd H_columns_;      // scratch
+  SecondOrderNoise second_order_;  // one landmark's
+  std::vector<Eigen::MatrixXd> noise_factors_;
+  int noise_factor_count_ = 0;
+  LandmarkRows H_f_at_infinity_;  // scratch
+  MeasurementRows rows_at_infinity_;
   std::vector<int> outliers_;   // of one landmark
   Eigen::MatrixXd P_measured_;  // covariance of the measured components
   Eigen::MatrixXd stack_;

@@ -44,8 +44,8 @@ std::optional<double> OutlierSearch::Find(
     const Eigen::Ref<const LandmarkRows, 0, Eigen::OuterStride<>>& H_f,
     const Eigen::Ref<const MeasurementRows, 0, Eigen::OuterStride<>>& H,
     const Eigen::Ref<const Eigen::VectorXd, 0, Eigen::InnerStride<>>& r,
-    const Eigen::Ref<const Eigen::MatrixXd>& P, const ChiSquaredGate& gate, int most,
-    std::vector<int>* outliers) {
+    const Eigen::Ref<const Eigen::MatrixXd>& P, const ChiSquaredGate& gate,
+    const Eigen::MatrixXd* noise, int most, std::vector<int>* outliers) {
   outliers->clear();
   HP_.noalias() = H * P;
   S_.noalias() = HP_ * H.transpose();
@@ -53,6 +53,7 @@ std::optional<double> OutlierSearch::Find(
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> llt(S_);
   if (llt.info() != Eigen::Success) return std::nullopt;
   BasisOfNullspace(H_f, &A_, &y_);
+  if (noise != nullptr) noise->triangularView<Eigen::Lower>().solveInPlace<Eigen::OnTheRight>(A_);
   llt.matrixL().solveInPlace(A_);
   y_ = r;
   llt.matrixL().solveInPlace(y_);

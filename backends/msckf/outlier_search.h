@@ -27,13 +27,14 @@ class OutlierSearch {
   /// rest passes `gate`. The distance of the rest where it does with at most `most` left out: their
   /// indices, ascending, are in `outliers`; else nothing. `H_f` is what ProjectNullspace left (m
   /// observations, 2m rows), `H` and `r` the 2m - 3 projected rows, P the covariance of what H's
-  /// columns act on.
+  /// columns act on. `noise`: where the rows were divided by L (lower triangle) before the
+  /// projection, L; then W = L^-T A S^-1 A' L^-1. Else null.
   [[nodiscard]] std::optional<double> Find(
       const Eigen::Ref<const LandmarkRows, 0, Eigen::OuterStride<>>& H_f,
       const Eigen::Ref<const MeasurementRows, 0, Eigen::OuterStride<>>& H,
       const Eigen::Ref<const Eigen::VectorXd, 0, Eigen::InnerStride<>>& r,
-      const Eigen::Ref<const Eigen::MatrixXd>& P, const ChiSquaredGate& gate, int most,
-      std::vector<int>* outliers);
+      const Eigen::Ref<const Eigen::MatrixXd>& P, const ChiSquaredGate& gate,
+      const Eigen::MatrixXd* noise, int most, std::vector<int>* outliers);
 
  private:
   double bound_;
