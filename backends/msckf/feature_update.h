@@ -83,7 +83,9 @@ class FeatureUpdate {
   void ProjectOne(const FilterState& state, const Candidate& candidate);
   /// H P of a landmark's rows before the projection, into HP_.
   void MultiplyOne(const FilterState& state, const Candidate& candidate);
-  [[nodiscard]] bool PassesGate(const Candidate& candidate);
+  [[nodiscard]] bool PassesGate(const FilterState& state, const Candidate& candidate);
+  /// The covariance of the measured components; gathered when first asked for in a frame.
+  [[nodiscard]] const Eigen::MatrixXd& MeasuredCovariance(const FilterState& state);
   /// Leaves out what contradicts the rest and takes the landmark through the steps once more, up to
   /// the projection. False where that is not possible.
   [[nodiscard]] bool RemoveOutliers(const FilterState& state, Candidate* candidate);
@@ -105,6 +107,8 @@ class FeatureUpdate {
   Eigen::MatrixXd H_columns_;   // scratch
   std::vector<int> outliers_;   // of one landmark
   Eigen::MatrixXd P_measured_;  // covariance of the measured components
+  bool P_measured_known_ = false;
+  Eigen::MatrixXd HP_measured_;  // scratch
   Eigen::MatrixXd stack_;
   MeasurementShape shape_ = MeasurementShape::kFull;
 };
