@@ -12,7 +12,7 @@ namespace {
 
 /// Up to so many rows a column the update is cheaper than to compress first, with H P' from the
 /// rows as they are before the projection (counted in multiplications).
-constexpr double kMaxUncompressed = 1.25;
+constexpr double kMaxUncompressed = 1.4;
 
 /// Rows of the residual after the projection of one landmark, at most.
 int MaxDegreesOfFreedom(const EstimatorSetup& setup, const MsckfOptions& options) {
@@ -146,24 +146,13 @@ void FeatureUpdate::MultiplyOne(const FilterState& state, const Candidate& candi
   }
 }
 
-void FeatureUpdate::GatherCovariance(const FilterState& state) {
-  if (candidates_.empty()) return;
-  const int width = columns_.width();
-  const std::span<const int> components = columns_.components();
-  const Eigen::Ref<const Eigen::MatrixXd> P = state.P();
-  P_measured_.resize(width, width);
-  for (int j = 0; j < width; ++j) {
-    for (int i = 0; i < width; ++i) P_measured_(i, j) = P(components[i], components[j]);
-  }
-}
-
 bool FeatureUpdate::HasSecondOrderNoise(const FilterState& state, const Candidate& candidate) {
   if (!options_.second_order_noise) return false;
   const int count = 2 * candidate.observation_count;
   const int first = columns_.CloneColumn(candidate.anchor_clone);
   const int width = columns_.width() - first;
   const auto H = rows_.block(candidate.first_row, first, count, width);
-  const auto P = P_measured_.bottomRightCorner(width, width);
+  const auto P = MeasuredCovariance(state).bottomRightCorner(width, width);
   const double rho = candidate.landmark.z();
   second_order_.SetDepth(H, H_f_.middleRows(candidate.first_row, count), P);
   if (!second_order_.Matters(rho, options_.max_landmarks_per_update)) return false;
@@ -223,6 +212,7 @@ void FeatureUpdate::Triangulate(const FilterState& state, FeatureTracks* tracks,
 void FeatureUpdate::Linearize(const FilterState& state, FeatureTracks* tracks,
                               FeatureCounts* counts) {
   columns_.Assign(state);
+  P_measured_known_ = false;
   noise_factor_count_ = 0;
   const int width = columns_.width() + 1;
   const auto row_count = static_cast<Eigen::Index>(2 * observations_.size());
@@ -247,7 +237,6 @@ void FeatureUpdate::Linearize(const FilterState& state, FeatureTracks* tracks,
 void FeatureUpdate::ProjectNullspace(const FilterState& state) {
   int row_count = 0;
   for (const Candidate& candidate : candidates_) row_count += 2 * candidate.observation_count - 3;
-  if (options_.gate || options_.second_order_noise) GatherCovariance(state);
   product_known_ = row_count <= kMaxUncompressed * columns_.width();
   if (product_known_ && (HP_.rows() < rows_.rows() || HP_.cols() != state.size())) {
     HP_.resize(std::max(rows_.rows(), HP_.rows()), state.size());
@@ -255,12 +244,36 @@ void FeatureUpdate::ProjectNullspace(const FilterState& state) {
   for (Candidate& candidate : candidates_) ProjectOne(state, &candidate);
 }
 
-bool FeatureUpdate::PassesGate(const Candidate& candidate) {
+const Eigen::MatrixXd& FeatureUpdate::MeasuredCovariance(const FilterState& state) {
+  if (P_measured_known_) return P_measured_;
+  const Eigen::Ref<const Eigen::MatrixXd> P = state.P();
+  const std::span<const int> components = columns_.components();
+  const int width = columns_.width();
+  P_measured_.resize(width, width);
+  for (int j = 0; j < width; ++j) {
+    for (int i = 0; i < width; ++i) P_measured_(i, j) = P(components[i], components[j]);
+  }
+  P_measured_known_ = true;
+  return P_measured_;
+}
+
+bool FeatureUpdate::PassesGate(const FilterState& state, const Candidate& candidate) {
   const int width = columns_.width();
   const int first = columns_.CloneColumn(candidate.anchor_clone);
-  const auto block = rows_.middleRows(candidate.first_row + 3, 2 * candidate.observation_count - 3);
-  return gate_.Passes(block.middleCols(first, width - first), block.col(width),
-                      P_measured_.bottomRightCorner(width - first, width - first));
+  const int count = 2 * candidate.observation_count - 3;
+  const auto block = rows_.middleRows(candidate.first_row + 3, count);
+  const auto H = block.middleCols(first, width - first);
+  const auto r = block.col(width);
+  if (!product_known_) {
+    return gate_.Passes(H, r,
+                        MeasuredCovariance(state).bottomRightCorner(width - first, width - first));
+  }
+  if (gate_.PassesAtOnce(r)) return true;
+  const std::span<const int> components = columns_.components();
+  const auto HP = HP_.middleRows(candidate.first_row + 3, count);
+  HP_measured_.resize(count, width - first);
+  for (int j = first; j < width; ++j) HP_measured_.col(j - first) = HP.col(components[j]);
+  return gate_.PassesOfKnownProduct(HP_measured_, H, r);
 }
 
 bool FeatureUpdate::RemoveOutliers(const FilterState& state, Candidate* candidate) {
@@ -270,7 +283,8 @@ bool FeatureUpdate::RemoveOutliers(const FilterState& state, Candidate* candidat
   const auto block = rows_.middleRows(candidate->first_row + 3, 2 * count - 3);
   if (!outlier_search_.Find(
           H_f_.middleRows(candidate->first_row, 2 * count), block.middleCols(first, width - first),
-          block.col(width), P_measured_.bottomRightCorner(width - first, width - first), gate_,
+          block.col(width),
+          MeasuredCovariance(state).bottomRightCorner(width - first, width - first), gate_,
           candidate->noise_factor < 0 ? nullptr : &noise_factors_[candidate->noise_factor],
           std::min(count / 4, count - options_.min_observations), &outliers_)) {
     return false;
@@ -297,9 +311,9 @@ bool FeatureUpdate::RemoveOutliers(const FilterState& state, Candidate* candidat
 void FeatureUpdate::Gate(const FilterState& state, FeatureTracks* tracks, FeatureCounts* counts) {
   KeepUnless(&candidates_, [&](Candidate& candidate) {
     tracks->Consume(candidate.track);
-    bool passes = !options_.gate || PassesGate(candidate);
+    bool passes = !options_.gate || PassesGate(state, candidate);
     if (!passes && options_.remove_outliers) {
-      passes = RemoveOutliers(state, &candidate) && PassesGate(candidate);
+      passes = RemoveOutliers(state, &candidate) && PassesGate(state, candidate);
       if (passes) ++counts->cleaned;
     }
     ++(passes ? counts->used : counts->gated);

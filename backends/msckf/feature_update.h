@@ -83,8 +83,6 @@ class FeatureUpdate {
   [[nodiscard]] bool LinearizeOne(const FilterState& state, const Candidate& candidate);
   [[nodiscard]] bool HasDepth(const Candidate& candidate);
   void ProjectOne(const FilterState& state, Candidate* candidate);
-  /// P of what the columns act on, from the filter's.
-  void GatherCovariance(const FilterState& state);
   /// The noise of second order of a landmark's rows before the projection (second_order_noise.h),
   /// into second_order_. False where it is too small to matter.
   [[nodiscard]] bool HasSecondOrderNoise(const FilterState& state, const Candidate& candidate);
@@ -92,7 +90,9 @@ class FeatureUpdate {
   void WhitenOne(Candidate* candidate);
   /// H P of a landmark's rows before the projection, into HP_.
   void MultiplyOne(const FilterState& state, const Candidate& candidate);
-  [[nodiscard]] bool PassesGate(const Candidate& candidate);
+  [[nodiscard]] bool PassesGate(const FilterState& state, const Candidate& candidate);
+  /// The covariance of the measured components; gathered when first asked for in a frame.
+  [[nodiscard]] const Eigen::MatrixXd& MeasuredCovariance(const FilterState& state);
   /// Leaves out what contradicts the rest and takes the landmark through the steps once more, up to
   /// the projection. False where that is not possible.
   [[nodiscard]] bool RemoveOutliers(const FilterState& state, Candidate* candidate);
@@ -119,6 +119,8 @@ class FeatureUpdate {
   MeasurementRows rows_at_infinity_;
   std::vector<int> outliers_;   // of one landmark
   Eigen::MatrixXd P_measured_;  // covariance of the measured components
+  bool P_measured_known_ = false;
+  Eigen::MatrixXd HP_measured_;  // scratch
   Eigen::MatrixXd stack_;
   MeasurementShape shape_ = MeasurementShape::kFull;
 };

@@ -84,8 +84,9 @@ void FilterState::Rebase() {
   Eigen::Ref<Eigen::MatrixXd> P_all = P();
   const auto add_rotation = [&](int component, int theta, const Eigen::Vector3d& moved) {
     const Eigen::Matrix3d M = -Hat(moved);
-    P_all.middleRows<3>(component) += M * P_all.middleRows<3>(theta);
-    P_all.middleCols<3>(component) += P_all.middleCols<3>(theta) * M.transpose();
+    // Neither product is of what it is added to: no temporaries are needed.
+    P_all.middleRows<3>(component) += M.lazyProduct(P_all.middleRows<3>(theta));
+    P_all.middleCols<3>(component) += P_all.middleCols<3>(theta).lazyProduct(M.transpose());
   };
   const auto rebase = [&](int offset, bool with_velocity, const NavState& nav, NavState* fej) {
     add_rotation(offset + 3, offset, nav.p_GB - fej->p_GB);

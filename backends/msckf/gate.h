@@ -22,16 +22,28 @@ class ChiSquaredGate {
   [[nodiscard]] bool Passes(const Eigen::MatrixBase<DerivedH>& H,
                             const Eigen::MatrixBase<DerivedR>& r,
                             const Eigen::MatrixBase<DerivedP>& P) {
-    const double threshold = Threshold(static_cast<int>(r.size()));
-    // H P H' is positive semidefinite, so the squared norm is an upper bound.
-    if (r.squaredNorm() <= threshold) return true;
-    const auto m = r.size();
-    HP_.resize(m, H.cols());
+    if (PassesAtOnce(r)) return true;
+    HP_.resize(r.size(), H.cols());
     HP_.noalias() = H * P;
-    S_.resize(m, m);
-    S_.noalias() = HP_ * H.transpose();
+    return PassesOfKnownProduct(HP_, H, r);
+  }
+
+  /// True where no covariance is needed: H P H' is positive semidefinite, so the squared norm of r
+  /// is an upper bound.
+  template <class DerivedR>
+  [[nodiscard]] bool PassesAtOnce(const Eigen::MatrixBase<DerivedR>& r) const {
+    return r.squaredNorm() <= Threshold(static_cast<int>(r.size()));
+  }
+
+  /// Passes of a given H P.
+  template <class DerivedHP, class DerivedH, class DerivedR>
+  [[nodiscard]] bool PassesOfKnownProduct(const Eigen::MatrixBase<DerivedHP>& HP,
+                                          const Eigen::MatrixBase<DerivedH>& H,
+                                          const Eigen::MatrixBase<DerivedR>& r) {
+    S_.resize(r.size(), r.size());
+    S_.noalias() = HP * H.transpose();
     S_.diagonal().array() += 1.0;
-    return Distance(r) <= threshold;
+    return Distance(r) <= Threshold(static_cast<int>(r.size()));
   }
 
  private:

@@ -121,21 +121,20 @@ void NormalEquations::AddLandmarkOf(int anchor, std::span<const LinearObservatio
   // Products of so few rows are quickest coefficient by coefficient (lazyProduct); the factor that
   // gives the rows is kept transposed, so that these lie next to one another.
   using FrameColumns = Eigen::Matrix<double, kSize, 2>;
-  using CalibrationRows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3,
-                                        ReprojectionJacobians::kMaxCalibration>;
   std::array<Eigen::Matrix<double, 3, kSize>, kMaxFrames> W;  // landmark x frame
   std::array<bool, kMaxFrames> seen{};
-  CalibrationRows W_c(3, c_size);
-  W_c.setZero();
-  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, ReprojectionJacobians::kMaxCalibration,
-                2>
-      J_c_t(c_size, 2);
   Eigen::Matrix3d V = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b_l = Eigen::Vector3d::Zero();
   const auto see = [&](int frame) {
     if (!seen[frame]) W[frame].setZero();
     seen[frame] = true;
   };
+
+  // What goes with the calibration is summed over all pixels at once: [J_l J_a | J_c r]' J_c.
+  constexpr int kBefore = 9;
+  const auto pixel_rows = 2 * static_cast<Eigen::Index>(observations.size());
+  if (c_size > 0 && pixels_.rows() < pixel_rows) pixels_.resize(pixel_rows, kBefore + c_size + 1);
+  Eigen::Index row = 0;
 
   see(anchor);
   FrameRows J_a = FrameRows::Zero();
@@ -148,7 +147,6 @@ void NormalEquations::AddLandmarkOf(int anchor, std::span<const LinearObservatio
     V.noalias() += J_l_t * J_l;
     b_l.noalias() += J_l_t * o.r;
 
-    const auto J_c = o.J.calibration.rightCols(c_size);
     FrameRows J_f = o.J.state.template leftCols<kSize>();
     if (f == anchor) {
       J_f.template leftCols<6>() += o.J.anchor;
@@ -160,25 +158,30 @@ void NormalEquations::AddLandmarkOf(int anchor, std::span<const LinearObservatio
       // The anchor is the first frame of its landmark, so this is the upper triangle.
       H.block<kSize, kSize>(kFrameSize * anchor, kFrameSize * f) += J_a_t.lazyProduct(J_f);
       b.segment<kSize>(kFrameSize * anchor) += J_a_t.lazyProduct(o.r);
-      H.block(kFrameSize * anchor, c, kSize, c_size) += J_a_t.lazyProduct(J_c);
     }
     const FrameColumns J_f_t = J_f.transpose();
     W[f] += J_l_t.lazyProduct(J_f);
     H.block<kSize, kSize>(kFrameSize * f, kFrameSize * f) += J_f_t.lazyProduct(J_f);
     b.segment<kSize>(kFrameSize * f) += J_f_t.lazyProduct(o.r);
     if (c_size > 0) {
-      J_c_t = J_c.transpose();
+      const auto J_c = o.J.calibration.rightCols(c_size);
       H.block(kFrameSize * f, c, kSize, c_size) += J_f_t.lazyProduct(J_c);
-      H.block(c, c, c_size, c_size) += J_c_t.lazyProduct(J_c);
-      b.segment(c, c_size) += J_c_t.lazyProduct(o.r);
-      W_c += J_l_t.lazyProduct(J_c);
+      auto rows = pixels_.middleRows<2>(row);
+      rows.leftCols<3>() = J_l;
+      if (f == anchor) {
+        rows.middleCols<6>(3).setZero();
+      } else {
+        rows.middleCols<6>(3) = o.J.anchor;
+      }
+      rows.middleCols(kBefore, c_size) = J_c;
+      rows.col(kBefore + c_size) = o.r;
+      row += 2;
     }
   }
 
   // Schur complement of the landmark: with Y = L^-1 W, H -= Y'Y and b -= Y'(L^-1 b_l).
   const Eigen::Matrix3d L_inverse = LandmarkInverseCholesky(V);
   const Eigen::Vector3d y_l = L_inverse * b_l;
-  const CalibrationRows Y_c = L_inverse.lazyProduct(W_c);
   for (int f = 0; f < frame_count_; ++f) {
     if (seen[f]) W[f] = L_inverse.lazyProduct(W[f]).eval();
   }
@@ -190,15 +193,24 @@ void NormalEquations::AddLandmarkOf(int anchor, std::span<const LinearObservatio
       H.block<kSize, kSize>(kFrameSize * f, kFrameSize * g) -= Y_t.lazyProduct(W[g]);
     }
     b.segment<kSize>(kFrameSize * f) -= Y_t.lazyProduct(y_l);
+  }
+  if (c_size == 0) return;
+
+  const auto pixels = pixels_.topRows(row);
+  products_.noalias() = pixels.transpose() * pixels.middleCols(kBefore, c_size);
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3,
+                ReprojectionJacobians::kMaxCalibration>
+      Y_c = L_inverse.lazyProduct(products_.topRows<3>());
+  H.block(kFrameSize * anchor, c, 6, c_size) += products_.middleRows<6>(3);
+  H.block(c, c, c_size, c_size) += products_.middleRows(kBefore, c_size);
+  b.segment(c, c_size) += products_.bottomRows<1>().transpose();
+  for (int f = 0; f < frame_count_; ++f) {
+    if (!seen[f]) continue;
+    const Eigen::Matrix<double, kSize, 3> Y_t = W[f].transpose();
     H.block(kFrameSize * f, c, kSize, c_size) -= Y_t.lazyProduct(Y_c);
   }
-  if (c_size > 0) {
-    const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor,
-                        ReprojectionJacobians::kMaxCalibration, 3>
-        Y_c_t = Y_c.transpose();
-    H.block(c, c, c_size, c_size) -= Y_c_t.lazyProduct(Y_c);
-    b.segment(c, c_size) -= Y_c_t.lazyProduct(y_l);
-  }
+  H.block(c, c, c_size, c_size).noalias() -= Y_c.transpose() * Y_c;
+  b.segment(c, c_size).noalias() -= Y_c.transpose() * y_l;
 }
 
 void NormalEquations::AddPrior(const WindowPrior& prior) {

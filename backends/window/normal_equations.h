@@ -70,8 +70,10 @@ class NormalEquations {
 
   const CalibrationLayout* layout_;
   int frame_count_;
-  int calibration_;      ///< its first component
-  InformationForm sum_;  ///< upper triangle
+  int calibration_;           ///< its first component
+  InformationForm sum_;       ///< upper triangle
+  Eigen::MatrixXd pixels_;    ///< scratch
+  Eigen::MatrixXd products_;  ///< scratch
 };
 
 }  // namespace duet

@@ -104,7 +104,9 @@ WindowPrior PriorFromInformation(const InformationForm& form, int frame_count,
 
 void AddPrior(const WindowPrior& prior, int frame_count, const CalibrationLayout& layout,
               InformationForm* form) {
-  const Eigen::MatrixXd H = prior.root.J.transpose() * prior.root.J;
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(prior.root.J.cols(), prior.root.J.cols());
+  H.selfadjointView<Eigen::Upper>().rankUpdate(prior.root.J.transpose());
+  H.triangularView<Eigen::StrictlyLower>() = H.transpose();
   const Eigen::VectorXd b = prior.root.J.transpose() * prior.root.e;
   int row = 0;
   for (const PriorBlock& a : prior.blocks) {

@@ -4,9 +4,11 @@ namespace duet {
 namespace {
 
 ObservingState StateOf(const ReprojectionSetup& setup, const WindowPoint& point,
-                       const std::vector<WindowFrame>& frames, int frame) {
-  return {point.nav[frame], frames[frame].t_d_at_instant_s,
-          setup.off_instant ? &frames[frame].rates : nullptr};
+                       const std::vector<WindowFrame>& frames,
+                       const LandmarkObservation& observation) {
+  const WindowFrame& frame = frames[observation.frame];
+  return {point.nav[observation.frame], frame.t_d_at_instant_s,
+          setup.off_instant ? &frame.rates : nullptr, &observation.motion};
 }
 
 // d uv / d one block of the calibration.
@@ -58,7 +60,7 @@ bool EvaluateReprojection(const ReprojectionSetup& setup, const WindowPoint& poi
                           Eigen::Vector2d* r) {
   Eigen::Vector2d uv;
   if (!PredictPixel(point.rig, point.nav[anchor].pose(), landmark,
-                    StateOf(setup, point, frames, observation.frame), observation.pixel, setup.g_G,
+                    StateOf(setup, point, frames, observation), observation.pixel, setup.g_G,
                     &uv)) {
     return false;
   }
@@ -74,8 +76,8 @@ bool EvaluateReprojection(const ReprojectionSetup& setup, const WindowPoint& poi
   Eigen::Vector2d uv;
   ObservationJacobians J;
   if (!PredictPixel(point.rig, point.nav[anchor].pose(), landmark,
-                    StateOf(setup, point, frames, observation.frame), observation.pixel, setup.g_G,
-                    &uv, &J)) {
+                    StateOf(setup, point, frames, observation), observation.pixel, setup.g_G, &uv,
+                    &J)) {
     return false;
   }
   const double weight = 1.0 / setup.pixel_noise_px;

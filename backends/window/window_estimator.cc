@@ -184,6 +184,9 @@ void WindowEstimator::TriangulateNew() {
     for (WindowFrame& frame : frames_) {
       frame.rates.Assign(imu_, frame.state.instant, RateReach(frame), frame.state.biases, rig_.imu);
     }
+    for (const Landmark& landmark : table_.landmarks()) {
+      for (const LandmarkObservation& o : landmark.observations) o.motion.Clear();
+    }
   }
   TriangulationOptions triangulation;
   triangulation.min_parallax_rad = options_.min_parallax_rad;

@@ -56,6 +56,7 @@ struct LandmarkObservation {
   int frame = 0;
   PixelObservation pixel;
   Eigen::Vector3d bearing_B = Eigen::Vector3d::Zero();  ///< unit, by the calibration of its time
+  mutable RateProfile::Memo motion = {};                ///< emptied with the frame's rates
 };
 
 /// A track's point: (alpha, beta, rho) in C0 of the anchor, the first frame that it was seen in.

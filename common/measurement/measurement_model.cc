@@ -31,7 +31,7 @@ bool PredictPixel(const RigCalibration& rig, const Pose& anchor_T_GB, const Inve
   Eigen::Vector3d p_t = state.nav.p_GB;
   Eigen::Vector3d Ri_y = Eigen::Vector3d::Zero();
   if (moved) {
-    motion = state.rates->At(tau);
+    motion = state.memo != nullptr ? state.rates->At(tau, state.memo) : state.rates->At(tau);
     if (tau != 0.0) {
       R_t = state.nav.R_GB * motion.R;
       Ri_y = state.nav.R_GB * motion.y;

@@ -25,6 +25,7 @@ struct ObservingState {
   NavState nav;                        ///< at the instant s_i
   double t_d_at_instant_s = 0.0;       ///< the t_d that s_i was made with
   const RateProfile* rates = nullptr;  ///< may be null where t_d and t_r are fixed and tau is 0
+  RateProfile::Memo* memo = nullptr;   ///< of `rates` and one observation; null for none
 };
 
 /// d uv / d everything, px per unit; errors as in DESIGN.md section 3. Blocks of the anchor are

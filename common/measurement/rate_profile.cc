@@ -29,8 +29,7 @@ void RateProfile::Assign(const ImuBuffer& buffer, Timestamp instant, double reac
   // Backwards first, so that nodes ascend once reversed.
   const auto walk = [&](Timestamp limit) {
     buffer.Extract(instant, limit, &readings_);
-    Motion motion{Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
-                  Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    Motion motion;
     for (std::size_t i = 0; i < readings_.size(); ++i) {
       const ImuRates rates = correction(readings_[i].omega_m, readings_[i].a_m);
       if (i == 0) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <limits>
 #include <vector>
 
 #include "common/imu/imu_buffer.h"
@@ -16,11 +17,11 @@ namespace duet {
 class RateProfile {
  public:
   struct Motion {
-    Eigen::Quaterniond R;  ///< R_B(s_i) B(s_i + tau)
-    Eigen::Vector3d s;     ///< as in ImuDelta
-    Eigen::Vector3d y;
-    Eigen::Vector3d omega_B;  ///< corrected rates at s_i + tau
-    Eigen::Vector3d a_B;
+    Eigen::Quaterniond R = Eigen::Quaterniond::Identity();  ///< R_B(s_i) B(s_i + tau)
+    Eigen::Vector3d s = Eigen::Vector3d::Zero();            ///< as in ImuDelta
+    Eigen::Vector3d y = Eigen::Vector3d::Zero();
+    Eigen::Vector3d omega_B = Eigen::Vector3d::Zero();  ///< corrected rates at s_i + tau
+    Eigen::Vector3d a_B = Eigen::Vector3d::Zero();
   };
 
   /// Replaces the profile by the readings within [instant - reach_s, instant + reach_s], as far as
@@ -30,6 +31,22 @@ class RateProfile {
 
   /// Motion over `tau_s` from the instant; tau 0 gives the identity and the rates there.
   [[nodiscard]] Motion At(double tau_s) const;
+
+  /// The last answer, for who asks again and again over the same time (an observation: times change
+  /// from step to step of a solver, not from evaluation to evaluation). Belongs to one profile, and
+  /// only until its next Assign.
+  struct Memo {
+    void Clear() { tau_s = std::numeric_limits<double>::quiet_NaN(); }
+    double tau_s = std::numeric_limits<double>::quiet_NaN();  ///< none
+    Motion motion;
+  };
+  [[nodiscard]] const Motion& At(double tau_s, Memo* memo) const {
+    if (memo->tau_s != tau_s) {
+      memo->motion = At(tau_s);
+      memo->tau_s = tau_s;
+    }
+    return memo->motion;
+  }
 
  private:
   struct Node {

@@ -148,6 +148,55 @@ TEST_F(KalmanUpdateTest, ACompressedStackGivesTheSame) {
   EXPECT_LT((dx - dx_compressed).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+// Wider than the blocks in which the product with a triangular H is taken.
+TEST(KalmanUpdate, IsTheSameForAWideCompressedStack) {
+  Random random(8);
+  const Eigen::MatrixXd P = RandomCovariance(&random, 90);
+  const Eigen::MatrixXd H_r = 0.1 * RandomMatrix(&random, 150, 76);
+  std::vector<int> columns(75);
+  std::iota(columns.begin(), columns.end(), 10);
+  KalmanWorkspace workspace;
+  Eigen::MatrixXd P_full = P;
+  Eigen::VectorXd dx_full(90);
+  ASSERT_TRUE(KalmanUpdate(H_r, columns, P_full, dx_full, &workspace));
+  Eigen::MatrixXd stack = H_r;
+  const int left = Compress(stack);
+  Eigen::MatrixXd P_compressed = P;
+  Eigen::VectorXd dx_compressed(90);
+  ASSERT_TRUE(KalmanUpdate(stack.topRows(left), columns, P_compressed, dx_compressed, &workspace,
+                           MeasurementShape::kUpperTriangular));
+  EXPECT_LT((P_full - P_compressed).norm(), 1e-12 * P.norm());
+  EXPECT_LT((dx_full - dx_compressed).norm(), 1e-12 * P.norm());
+}
+
+// H P goes through the projection as the rows do: A' (H P) = (A' H) P.
+TEST(KalmanUpdate, TakesAProductThatWasProjectedWithItsRows) {
+  Random random(9);
+  const Eigen::MatrixXd P = RandomCovariance(&random, 20);
+  const Eigen::MatrixXd H_f = RandomMatrix(&random, 16, 3);
+  MeasurementRows rows = RandomMatrix(&random, 16, 13);
+  std::vector<int> columns(12);
+  std::iota(columns.begin(), columns.end(), 5);
+  MeasurementRows product = rows.leftCols(12) * P.middleRows(5, 12);
+  LandmarkRows H_f_used = H_f;
+  ProjectNullspace(H_f_used, rows);
+  ApplyProjection(H_f_used, product);
+  const Eigen::MatrixXd H_r = rows.bottomRows(13);
+  const Eigen::MatrixXd P_H = product.bottomRows(13).transpose();
+  EXPECT_LT((P_H - P.middleCols(5, 12) * H_r.leftCols(12).transpose()).norm(), 1e-13 * P_H.norm());
+
+  KalmanWorkspace workspace;
+  Eigen::MatrixXd P_expected = P;
+  Eigen::VectorXd dx_expected(20);
+  ASSERT_TRUE(KalmanUpdate(H_r, columns, P_expected, dx_expected, &workspace));
+  Eigen::MatrixXd P_known = P;
+  Eigen::VectorXd dx_known(20);
+  workspace.P_H = P_H;
+  ASSERT_TRUE(KalmanUpdateOfKnownProduct(H_r, columns, P_known, dx_known, &workspace));
+  EXPECT_LT((P_known - P_expected).norm(), 1e-12 * P.norm());
+  EXPECT_LT((dx_known - dx_expected).norm(), 1e-12 * P.norm());
+}
+
 // Measurements a million times better than the prior: what is left of P is 1e-12 of it, and
 // P - W W' still has eigenvalues that are positive to the rounding of P itself.
 TEST_F(KalmanUpdateTest, StaysPositiveUnderPreciseMeasurements) {

@@ -9,6 +9,13 @@ namespace duet::test {
 
 inline const Eigen::Vector3d kGravity(0, 0, -9.81);
 
+/// Independent standard normal numbers.
+template <class Matrix>
+Matrix Normal(Random* random, Eigen::Index rows, Eigen::Index cols) {
+  return Matrix::NullaryExpr(rows, cols,
+                             [random](Eigen::Index, Eigen::Index) { return random->Normal(); });
+}
+
 [[nodiscard]] Eigen::Vector3d RandomVector(Random* random, double sigma);
 /// A symmetric positive definite matrix with eigenvalues about 1.
 [[nodiscard]] Eigen::MatrixXd RandomCovariance(Random* random, int size);
