@@ -17,7 +17,7 @@ using test::Normal;
 /// A landmark whose Jacobians are linear in its inverse depth.
 struct UncertainLandmark {
   explicit UncertainLandmark(std::uint64_t seed) : random(seed) {
-    H_f = 5.0 * Normal<LandmarkPixelRows>(&random, kPixelRows, 3);
+    H_f = 5.0 * Normal<LandmarkRows>(&random, kPixelRows, 3);
     at_infinity = Normal<MeasurementRows>(&random, kPixelRows, kStateSize);
     D = Normal<MeasurementRows>(&random, kPixelRows, kStateSize);
     P = test::RandomCovariance(&random, kStateSize);
@@ -26,7 +26,7 @@ struct UncertainLandmark {
 
   Random random;
   double rho = 0.2;
-  LandmarkPixelRows H_f;
+  LandmarkRows H_f;
   MeasurementRows at_infinity;
   MeasurementRows D;
   MeasurementRows H;
@@ -76,7 +76,8 @@ TEST(SecondOrderNoise, FallsWithTheFourthPowerOfTheErrors) {
   const auto size = [&] {
     SecondOrderNoise noise;
     noise.SetDepth(landmark.H, landmark.H_f, landmark.P);
-    EXPECT_TRUE(noise.SetDerivative(landmark.H, landmark.at_infinity, landmark.rho, landmark.P, 1));
+    EXPECT_TRUE(
+        noise.SetDerivative(landmark.H, landmark.at_infinity, landmark.rho, landmark.P, 1'000'000));
     const Eigen::MatrixXd L = noise.factor().triangularView<Eigen::Lower>();
     return (L * L.transpose() - Eigen::MatrixXd::Identity(kPixelRows, kPixelRows)).norm();
   };
