@@ -147,7 +147,7 @@ void FeatureUpdate::MultiplyOne(const FilterState& state, const Candidate& candi
 }
 
 bool FeatureUpdate::HasSecondOrderNoise(const FilterState& state, const Candidate& candidate) {
-  if (!options_.second_order_noise) return false;
+  if (options_.second_order_landmarks == 0) return false;
   const int count = 2 * candidate.observation_count;
   const int first = columns_.CloneColumn(candidate.anchor_clone);
   const int width = columns_.width() - first;
@@ -155,7 +155,7 @@ bool FeatureUpdate::HasSecondOrderNoise(const FilterState& state, const Candidat
   const auto P = MeasuredCovariance(state).bottomRightCorner(width, width);
   const double rho = candidate.landmark.z();
   second_order_.SetDepth(H, H_f_.middleRows(candidate.first_row, count), P);
-  if (!second_order_.Matters(rho, options_.max_landmarks_per_update)) return false;
+  if (!second_order_.Matters(rho, options_.second_order_landmarks)) return false;
   H_f_at_infinity_.resize(count, 3);
   rows_at_infinity_.resize(count, rows_.cols());
   const InverseDepth at_infinity(candidate.landmark.x(), candidate.landmark.y(), 0.0);
@@ -164,7 +164,7 @@ bool FeatureUpdate::HasSecondOrderNoise(const FilterState& state, const Candidat
     return false;
   }
   return second_order_.SetDerivative(H, rows_at_infinity_.middleCols(first, width), rho, P,
-                                     options_.max_landmarks_per_update);
+                                     options_.second_order_landmarks);
 }
 
 void FeatureUpdate::WhitenOne(Candidate* candidate) {

@@ -13,7 +13,7 @@ struct MsckfOptions {
   bool first_estimates = true;
   bool rebase_first_estimates = true;
   int min_observations = 4;
-  bool second_order_noise = true;
+  int second_order_landmarks = 30;
   double min_depth_sigmas = 3.0;
   int max_landmarks_per_update = 30;
   bool gate = true;
@@ -51,10 +51,13 @@ struct MsckfOptions {
                 "the oldest observation is lost.",
          .min = 1,
          .max = 2000});
-    v.Field("second_order_noise", &second_order_noise,
-            {.doc = "What linearizing leaves out, inverse depth times poses and calibration, is "
-                    "noise; without, the filter is overconfident where the motion hardly fixes "
-                    "depths (docs/calibration.md)."});
+    v.Field(
+        "second_order_landmarks", &second_order_landmarks,
+        {.doc = "What linearizing a landmark leaves out, its depth's error times those of poses "
+                "and calibration, is noise as large as if so many landmarks shared it; 0: none, "
+                "and the filter is overconfident where the motion hardly fixes depths.",
+         .min = 0,
+         .max = 1000});
     v.Field("min_depth_sigmas", &min_depth_sigmas,
             {.doc = "A landmark is used where its inverse depth is so many of its standard "
                     "deviations away from zero; without, hovering makes the filter overconfident "

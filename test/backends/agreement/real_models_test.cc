@@ -54,6 +54,7 @@ Outcome RunEstimator(const std::string& name, const SimulatedRecording& recordin
   options.msckf.gate = false;
   options.msckf.max_landmarks_per_update = 1000;
   options.msckf.min_depth_sigmas = 0.0;
+  options.msckf.second_order_landmarks = 0;
   options.window.keyframes = WindowOptions::Keyframes::kEveryFrame;
   options.window.robust_loss = WindowOptions::RobustLoss::kNone;
   options.window.max_reprojection_sigmas = 0.0;
