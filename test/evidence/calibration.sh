@@ -32,9 +32,10 @@ for milliseconds in 20 30; do
   for estimator in msckf window; do
     for estimated in t_r none; do
       awk -F, -v estimator="$estimator" -v estimated="$estimated" '
+        FNR == 1 { for (i = 1; i <= NF; ++i) if ($i == "ate position [m]") ate = i }
         $1 != estimator || $4 != 0 { next }
-        FNR == NR { if ($2 == "none") global[$3] = $6; next }
-        $2 == estimated && ($3 in global) { print $6 / global[$3] }
+        FNR == NR { if ($2 == "none") global[$3] = $ate; next }
+        $2 == estimated && ($3 in global) { print $ate / global[$3] }
       ' "$out/global/runs.csv" "$out/rolling$milliseconds/runs.csv" | sort -g | awk -v e="$estimator" \
         -v estimated="$estimated" '{ ratio[NR] = $1 } END { printf("%s, estimated: %s: median paired ratio of ATE %.3f\n", e, estimated,
           (ratio[int((NR + 1) / 2)] + ratio[int(NR / 2) + 1]) / 2) }'
