@@ -18,6 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kIdDigits = 16;
+constexpr int kSeedDigits = 8;                // of the hash that a stream's own seed is made of
+constexpr std::uint64_t kSeeds = 2000000000;  // simulation.seed ends there
 constexpr const char* kToldErrorsSeed = "shared.calibration.told_errors_seed";
 
 void AddKeys(const std::vector<StudyKey>& keys, ConfigSources* sources) {
@@ -125,6 +127,7 @@ class Planner {
     } else {
       LookAtRecording(stream);
     }
+    stream_lines_ = stream.simulated() ? SimulatedLines(stream, 0) : RecordedLines(stream);
     for (std::size_t p = 0; p < study().perturbations.size(); ++p) {
       for (std::size_t s = 0; s < study().settings.size(); ++s) {
         AddCells(index, static_cast<int>(s), static_cast<int>(p));
@@ -216,7 +219,7 @@ class Planner {
     const StudyStream& stream = plan_.StreamOf(cell);
     // Where the seed moves the pixels, it moves nothing else; of a recording it may decide nothing.
     cell.draw_seed = stream.jitter_px > 0.0 ? stream.simulation_seed.value_or(1)
-                     : draws                ? cell.seed
+                     : draws                ? OwnSeed(cell.seed)
                                             : 1;
     cell.planned_stream = InputFor(cell);
     const PlannedStream& input = plan_.InputOf(cell);
@@ -233,12 +236,22 @@ class Planner {
     plan_.runs.push_back(std::move(cell));
   }
 
+  /// A seed of the grid as the stream has it: each stream draws its own noise and errors, for pairs
+  /// of several streams to be independent. By what the stream is, so that its name and place and
+  /// the other streams change nothing.
+  [[nodiscard]] int OwnSeed(int seed) const {
+    const std::string hash = Sha256Hex(stream_lines_ + Line("seed", std::to_string(seed)));
+    return static_cast<int>(std::stoull(hash.substr(0, kSeedDigits), nullptr, 16) % kSeeds);
+  }
+
   int InputFor(const PlannedRun& cell) {
     const StudyStream& stream = plan_.StreamOf(cell);
     PlannedStream input;
     input.stream = cell.stream;
     input.frames = frames_;
-    if (stream.simulated()) input.simulation_seed = stream.simulation_seed.value_or(cell.seed);
+    if (stream.simulated()) {
+      input.simulation_seed = stream.simulation_seed.value_or(OwnSeed(cell.seed));
+    }
     if (stream.jitter_px > 0.0) input.jitter_seed = cell.seed;
     const auto key = std::make_tuple(cell.stream, input.simulation_seed, input.jitter_seed);
     const auto found = inputs_.find(key);
@@ -278,7 +291,9 @@ class Planner {
   StudyPlan plan_;
   const fs::path data_;
   const StudyRecordings& known_;
-  int frames_ = 0;  // of the stream that is being added
+  // Of the stream that is being added:
+  int frames_ = 0;
+  std::string stream_lines_;  // what it is, without a seed
   std::map<std::tuple<int, int, int>, int> inputs_;
 };
 

@@ -30,7 +30,7 @@ struct PlannedStream {
   std::string id;
   std::string determined_by;  ///< the lines that the id is the hash of
   int stream = 0;             ///< of StudyFile::streams
-  int simulation_seed = 0;
+  int simulation_seed = 0;    ///< the file's, or the stream's own for the grid's seed
   int jitter_seed = 0;
   int frames = 0;  ///< of a run's span; 0 where it is not known
   /// Of a recording whose pixels are jittered: the stream without that.
@@ -48,7 +48,7 @@ struct PlannedRun {
   int setting = 0;
   int perturbation = 0;
   int seed = 0;        ///< the grid's
-  int draw_seed = 0;   ///< of the start's and the told calibration's errors
+  int draw_seed = 0;   ///< of the start's and the told calibration's errors; the stream's own
   double start_s = 0;  ///< of a recording
 };
 

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "common/support/input_error.h"
 #include "experiments/study/study_records.h"
@@ -89,6 +91,39 @@ TEST(StudyPlanTest, AJitteredStreamIsOneWorldForAllSeeds) {
   }
 }
 
+// Else the pairs of a seed on several streams would share their noise, and a test over all streams
+// would take them as independent.
+TEST(StudyPlanTest, EachStreamDrawsWithSeedsOfItsOwn) {
+  const auto seeds_of = [](const StudyPlan& plan) {
+    std::map<std::pair<std::string, int>, int> seeds;
+    for (const PlannedRun& run : plan.runs) {
+      EXPECT_EQ(plan.InputOf(run).simulation_seed, run.draw_seed);
+      const std::string& stream = plan.StreamOf(run).name;
+      EXPECT_EQ(seeds.emplace(std::pair(stream, run.seed), run.draw_seed).first->second,
+                run.draw_seed);  // every estimator, setting and perturbation the same
+    }
+    return seeds;
+  };
+  const std::string settings =
+      "settings: [{name: a}, {name: b, set: {msckf.max_clones: 9}}]\n"
+      "perturbations: [{name: none}, {name: p, set: {shared.pixel_noise_px: 2}}]\nseeds: 1..20\n";
+  const std::string fast = "{name: fast, simulate: excited, set: {simulation.duration_s: 3}}";
+  const auto two = seeds_of(PlanOf(WithStream(kRoom + "\n  - " + fast, settings)));
+  std::set<int> distinct;
+  for (const auto& [where, seed] : two) distinct.insert(seed);
+  EXPECT_EQ(two.size(), 40U);
+  EXPECT_EQ(distinct.size(), two.size());
+  // Whatever other streams there are, and in which order.
+  const auto turned = seeds_of(PlanOf(WithStream(fast + "\n  - " + kRoom, settings)));
+  EXPECT_EQ(turned, two);
+  // One recording for all seeds is the one that the file names; what is drawn is not.
+  const StudyPlan one =
+      PlanOf(WithStream("{name: room, simulate: room_easy, simulation_seed: 4}", "seeds: 1..2\n"));
+  EXPECT_EQ(one.streams.size(), 1U);
+  EXPECT_EQ(one.streams[0].simulation_seed, 4);
+  EXPECT_NE(one.runs[0].draw_seed, one.runs[1].draw_seed);
+}
+
 TEST(StudyPlanTest, TheRunsSettingsAreWhatTheFileSays) {
   const StudyPlan plan = PlanOf(WithStream(
       "{name: room, simulate: room_easy, set: {simulation.pixel_noise_px: 0.4}}",
@@ -99,7 +134,7 @@ TEST(StudyPlanTest, TheRunsSettingsAreWhatTheFileSays) {
   configuration.Read(&sources);
   EXPECT_EQ(configuration.backends.msckf.max_clones, 9);
   EXPECT_EQ(configuration.shared.pixel_noise_px, 0.4);  // as the simulator tells it
-  EXPECT_EQ(configuration.shared.calibration.told_errors_seed, 6);
+  EXPECT_EQ(configuration.shared.calibration.told_errors_seed, plan.runs.front().draw_seed);
 }
 
 TEST(StudyPlanTest, ThePlansTableReadsBack) {

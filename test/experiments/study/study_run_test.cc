@@ -67,9 +67,10 @@ TEST_F(StudyRunTest, IsTheMonteCarloRunOfItsSeed) {
   options.start = configuration.initialization;
   options.told_from_priors = false;
   options.settle_s = 0.0;
-  const MonteCarloRun run = RunOnce(options, 3, [&](const EstimatorSetup& setup) {
-    return MakeEstimator("msckf", setup, configuration.backends);
-  });
+  const MonteCarloRun run =
+      RunOnce(options, plan_.runs[0].draw_seed, [&](const EstimatorSetup& setup) {
+        return MakeEstimator("msckf", setup, configuration.backends);
+      });
   // The told t_d is off by milliseconds, so that instants lie between rows of the truth: linear
   // over 5 ms, which is micrometres, against errors of centimetres.
   EXPECT_NEAR(Value(evaluation.metrics, "rms.position_m"), run.position_rms_m, 2e-5);
