@@ -15,6 +15,7 @@
 #include "evaluation/study_comparison.h"
 #include "evaluation/study_table_parts.h"
 #include "evaluation/text_table.h"
+#include "evaluation/verdict_parts.h"
 
 namespace duet {
 namespace {
@@ -67,8 +68,8 @@ const char* NeesVerdict(const NeesCell& cell, double alpha) {
   return cell.mean > cell.dof ? "too sure" : "too unsure";
 }
 
-std::string NeesSentence(const StudyGrid& grid, const std::vector<NeesCell>& cells, double alpha) {
-  std::string text;
+std::string NeesSentences(const StudyGrid& grid, const std::vector<NeesCell>& cells, double alpha) {
+  std::vector<std::string> clauses;
   // Of many arms those that are refuted are named; the others are counted.
   constexpr std::size_t kFewArms = 4;
   const bool many = grid.arms().size() > kFewArms;
@@ -91,7 +92,7 @@ std::string NeesSentence(const StudyGrid& grid, const std::vector<NeesCell>& cel
       tests_of_others += tested;
       continue;
     }
-    text += (text.empty() ? "" : "; ") + ("the covariance of " + grid.arms()[a].name);
+    std::string& text = clauses.emplace_back("the covariance of " + grid.arms()[a].name);
     if (worst == nullptr) {
       text += " is refuted in none of " + std::to_string(tested) + " tests";
       continue;
@@ -108,13 +109,13 @@ std::string NeesSentence(const StudyGrid& grid, const std::vector<NeesCell>& cel
             Number(worst->dof, 0) + " is expected, " + PValueText(worst->p_holm) + ")";
   }
   if (others > 0) {
-    text += (text.empty() ? "the covariances of all " : "; those of the other ") +
-            std::to_string(others) + " are refuted in none of " + std::to_string(tests_of_others) +
-            " tests";
+    clauses.push_back(
+        (clauses.empty() ? "the covariances of all " : "the covariances of the other ") +
+        std::to_string(others) + " are refuted in none of " + std::to_string(tests_of_others) +
+        " tests");
   }
-  if (text.empty()) return "No NEES can be tested: it takes runs with one on two inputs.";
-  text[0] = 'T';
-  return text + ".";
+  if (clauses.empty()) return "No NEES can be tested: it takes runs with one on two inputs.";
+  return SentencesOf(clauses);
 }
 
 std::vector<std::string> ReasonsOf(const StudyCell& cell) {
@@ -125,7 +126,7 @@ std::vector<std::string> ReasonsOf(const StudyCell& cell) {
   return reasons;
 }
 
-std::string FailureSentence(const StudyGrid& grid, const StudyTableOptions& options) {
+std::string FailureSentences(const StudyGrid& grid, const StudyTableOptions& options) {
   int runs = 0;
   int failed = 0;
   for (std::size_t s = 0; s < grid.streams().size(); ++s) {
@@ -145,24 +146,24 @@ std::string FailureSentence(const StudyGrid& grid, const StudyTableOptions& opti
     p_values.push_back(arms.overall().paired.failure_p_value);
   }
   const std::vector<double> adjusted = HolmAdjusted(p_values);
-  std::string text;
+  std::vector<std::string> clauses;
   for (std::size_t i = 0; i < comparison.arms.size(); ++i) {
     if (!(adjusted[i] <= options.alpha)) continue;
     const ArmComparison& arms = comparison.arms[i];
     const PairedComparison& paired = arms.overall().paired;
     const bool first = paired.only_first_failed > paired.only_second_failed;
     const int most = std::max(paired.only_first_failed, paired.only_second_failed);
-    text += (text.empty() ? "" : "; ") + (first ? arms.first : arms.second) +
-            " fails more often than " + (first ? arms.second : arms.first) + " (alone in " +
-            std::to_string(most) + " pairs, the other alone in " +
-            std::to_string(paired.only_first_failed + paired.only_second_failed - most) + "; " +
-            PValueText(adjusted[i]) + ")";
+    clauses.push_back((first ? arms.first : arms.second) + " fails more often than " +
+                      (first ? arms.second : arms.first) + " (alone in " + std::to_string(most) +
+                      " pairs, the other alone in " +
+                      std::to_string(paired.only_first_failed + paired.only_second_failed - most) +
+                      "; " + PValueText(adjusted[i]) + ")");
   }
-  if (text.empty()) {
+  if (clauses.empty()) {
     return std::to_string(failed) + " of " + of_runs +
            " failed, and it is not shown that one fails more often than another.";
   }
-  return text + ".";
+  return SentencesOf(clauses);
 }
 
 }  // namespace
@@ -220,7 +221,7 @@ StudyTable NeesTable(const StudyGrid& grid, const std::vector<Metric>& metrics,
                    std::move(mean), NumberCell(cell.band.low, 2), NumberCell(cell.band.high, 2),
                    PValueCell(cell.p_holm), TextCell(NeesVerdict(cell, options.alpha))}});
   }
-  table.verdict = NeesSentence(grid, cells, options.alpha);
+  table.verdict = NeesSentences(grid, cells, options.alpha);
   table.foot = {
       "inputs: of the runs, different; runs on one recording share its noise and are one value, "
       "their "
@@ -260,7 +261,7 @@ StudyTable FailureTable(const StudyGrid& grid, const StudyTableOptions& options)
                                       TextCell(CommonestReason(ReasonsOf(cell)))}});
     }
   }
-  table.verdict = FailureSentence(grid, options);
+  table.verdict = FailureSentences(grid, options);
   table.foot = {
       "interval: Wilson's, as if each run had input of its own; who fails more often: McNemar's "
       "exact test of the pairs over "

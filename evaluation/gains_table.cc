@@ -116,7 +116,7 @@ std::string UndecidedGain(const MetricGains& gains, const GainComparison& gain) 
 
 }  // namespace
 
-std::string GainsSentence(const MetricGains& gains) {
+std::string GainsSentences(const MetricGains& gains) {
   // All of a few; of many those that are decided.
   constexpr std::size_t kFew = 3;
   std::vector<std::string> clauses;
@@ -136,7 +136,7 @@ std::string GainsSentence(const MetricGains& gains) {
                       gains.comparison.metric.words + " in " + (all ? "any of " : "the other ") +
                       CountText(undecided, "comparison"));
   }
-  return SentenceOf(clauses);
+  return SentencesOf(clauses);
 }
 
 StudyTable GainsTable(const MetricGains& gains, const StudyTableOptions& options) {
@@ -178,7 +178,7 @@ StudyTable GainsTable(const MetricGains& gains, const StudyTableOptions& options
                      PValueCell(row.p_holm), TextCell(DecisionText(arms, row.decision))}});
     }
   }
-  table.verdict = GainsSentence(gains);
+  table.verdict = GainsSentences(gains);
   table.foot = {
       ratio
           ? "gain: the metric with the change / with the baseline, of one estimator on one stream "

@@ -92,7 +92,7 @@ StudyTable PairedTable(const MetricComparison& comparison, const StudyTableOptio
                      PValueCell(row.p_holm), TextCell(DecisionText(arms, row.decision))}});
     }
   }
-  table.verdict = VerdictSentence(comparison);
+  table.verdict = VerdictSentences(comparison);
   table.foot = {
       "ratio, difference: first / second, first - second; one failed: the first alone : the second "
       "alone"};

@@ -7,6 +7,7 @@
 #include "evaluation/metrics.h"
 #include "evaluation/study_comparison.h"
 #include "evaluation/study_table_parts.h"
+#include "evaluation/verdict_parts.h"
 
 namespace duet {
 namespace {
@@ -122,11 +123,7 @@ std::vector<StudyTable> SensitivityTables(const StudyGrid& grid, const StudyTabl
     }
   }
   if (clauses.empty()) return {};
-  for (std::size_t i = 0; i < clauses.size(); ++i) {
-    table.verdict += (i > 0 ? "; " : "") + clauses[i];
-  }
-  table.verdict[0] = 'O';
-  table.verdict += ".";
+  table.verdict = SentencesOf(clauses);
   table.foot = {
       "ratio, p, better: over all streams, as in the measure's own table of pairs (METRIC.paired), "
       "where p is corrected over that table"};

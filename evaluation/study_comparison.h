@@ -90,8 +90,9 @@ void DecideAll(const StudyTableOptions& options, MetricComparison* comparison);
 /// The median over pairs of values of their distance; NaN below two values.
 [[nodiscard]] double MedianPairDifference(const std::vector<double>& values);
 
-/// One sentence: who is better, by how much, how sure; or that nothing can be said, and why.
-[[nodiscard]] std::string VerdictSentence(const MetricComparison& comparison);
+/// A sentence a comparison, a line each: who is better, by how much, how sure; or that nothing can
+/// be said, and why. Of many those that are decided, and the number of the others.
+[[nodiscard]] std::string VerdictSentences(const MetricComparison& comparison);
 
 /// "msckf", "nothing shown", "below the chaos floor", ...
 [[nodiscard]] std::string DecisionText(const ArmComparison& arms, Decision decision);

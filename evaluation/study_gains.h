@@ -47,7 +47,7 @@ struct MetricGains {
 [[nodiscard]] std::optional<MetricGains> CompareGains(const StudyGrid& grid, const Metric& metric,
                                                       const StudyTableOptions& options);
 
-/// One sentence: whom the change helps more, and by how much.
-[[nodiscard]] std::string GainsSentence(const MetricGains& gains);
+/// A sentence a change, a line each: whom it helps more, and by how much.
+[[nodiscard]] std::string GainsSentences(const MetricGains& gains);
 
 }  // namespace duet

@@ -291,7 +291,7 @@ std::vector<StudyTable> MakeStudyTables(const StudyResult& study,
       continue;
     }
     const MetricComparison comparison = CompareArms(grid, metric, options);
-    table.verdict = VerdictSentence(comparison);
+    table.verdict = VerdictSentences(comparison);
     tables.push_back(std::move(table));
     if (!comparison.arms.empty()) tables.push_back(PairedTable(comparison, options));
     if (const auto gains = CompareGains(grid, metric, options)) {

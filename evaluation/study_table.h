@@ -44,7 +44,8 @@ struct StudyTable {
   std::string title;  ///< "position error (ATE) [m], median [quartiles]"
   std::vector<TableColumn> columns;
   std::vector<TableRow> rows;
-  std::string verdict;            ///< one sentence: who is better, by how much, how sure
+  std::string
+      verdict;  ///< who is better, by how much, how sure: a sentence a comparison, a line each
   std::vector<std::string> foot;  ///< how to read it, what was switched on, from which records
 };
 
@@ -97,16 +98,20 @@ struct StudyTableOptions {
 [[nodiscard]] std::vector<StudyTable> MakeStudyTables(const StudyResult& study,
                                                       const StudyTableOptions& options = {});
 
-/// The first table of a study, for its summary: each stream and (estimator, setting, perturbation)
-/// with its runs, failures, and one number a metric: what the metric's own table shows (median of
-/// the runs that did not fail; of signed errors the median magnitude; of NEES the mean over
-/// inputs), to the metric's digits. Throws InputError for a metric that there is not.
+/// The first table of a study, for its summary: what `tables` say, and each stream and (estimator,
+/// setting, perturbation) with its runs, failures, and one number a metric: what the metric's own
+/// table shows (median of the runs that did not fail; of signed errors the median magnitude; of
+/// NEES the mean over inputs), to the metric's digits. Throws InputError for a metric that there is
+/// not.
 [[nodiscard]] StudyTable SummaryTable(const StudyResult& study,
-                                      const std::vector<std::string>& metrics);
+                                      const std::vector<std::string>& metrics,
+                                      const std::vector<StudyTable>& tables);
 
 /// A sentence or a foot in lines that a terminal shows whole (100 columns), the later ones
 /// indented.
 [[nodiscard]] std::string ParagraphText(const std::string& text);
+/// A verdict's sentences; empty where it is.
+[[nodiscard]] std::vector<std::string> SentencesOfVerdict(const std::string& verdict);
 
 /// For a terminal: aligned, best marked `*`, second `+`.
 [[nodiscard]] std::string TableText(const StudyTable& table);

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@ double SummaryValue(const StudyCell& cell, const Metric& metric) {
 
 }  // namespace
 
-StudyTable SummaryTable(const StudyResult& study, const std::vector<std::string>& metrics) {
+StudyTable SummaryTable(const StudyResult& study, const std::vector<std::string>& metrics,
+                        const std::vector<StudyTable>& tables) {
   std::vector<Metric> shown;
   for (const std::string& key : metrics) shown.push_back(MetricOf(key));
   StudyTable table;
@@ -48,6 +50,11 @@ StudyTable SummaryTable(const StudyResult& study, const std::vector<std::string>
       }
       table.rows.push_back(std::move(row));
     }
+  }
+  std::set<std::string> said;  // a metric's two tables have the same verdict
+  for (const StudyTable& of : tables) {
+    if (of.verdict.empty() || !said.insert(of.verdict).second) continue;
+    table.verdict += (table.verdict.empty() ? "" : "\n") + of.verdict;
   }
   table.foot = {std::string("medians over the runs that did not fail") +
                 (any_signed ? "; of errors with a sign, of their magnitudes" : "") +

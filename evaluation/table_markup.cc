@@ -167,7 +167,11 @@ std::string TableMarkdown(const StudyTable& table) {
     text += "\n";
   }
   text += "\n";
-  if (!table.verdict.empty()) text += MarkdownText(table.verdict) + "\n\n";
+  const std::vector<std::string> sentences = SentencesOfVerdict(table.verdict);
+  for (const std::string& sentence : sentences) {
+    text += (sentences.size() > 1 ? "- " : "") + MarkdownText(sentence) + "\n";
+  }
+  if (!sentences.empty()) text += "\n";
   if (marked) text += "Best bold, second in italics.\n\n";
   for (const std::string& line : table.foot) text += "- " + MarkdownText(line) + "\n";
   return text;
@@ -218,7 +222,7 @@ std::string TableLatex(const StudyTable& table) {
   const auto add_foot = [&](const std::string& line) {
     foot += (foot.empty() ? "" : "\\\\\n") + LatexText(line);
   };
-  if (!table.verdict.empty()) add_foot(table.verdict);
+  for (const std::string& sentence : SentencesOfVerdict(table.verdict)) add_foot(sentence);
   if (marked) add_foot("Best bold, second underlined.");
   for (const std::string& line : table.foot) add_foot(line);
   if (!foot.empty()) {

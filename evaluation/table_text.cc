@@ -164,6 +164,16 @@ std::string ParagraphText(const std::string& text) {
   return result;
 }
 
+std::vector<std::string> SentencesOfVerdict(const std::string& verdict) {
+  std::vector<std::string> sentences;
+  for (std::size_t at = 0; at < verdict.size();) {
+    const std::size_t end = std::min(verdict.find('\n', at), verdict.size());
+    sentences.push_back(verdict.substr(at, end - at));
+    at = end + 1;
+  }
+  return sentences;
+}
+
 std::string TableText(const StudyTable& table) {
   const std::vector<std::size_t> width = ColumnWidths(table);
   std::string text = table.title + "\n\n";
@@ -212,7 +222,11 @@ std::string TableText(const StudyTable& table) {
     text += WithoutBlanksAtEnd(line);
   }
   text += "\n";
-  if (!table.verdict.empty()) text += ParagraphText(table.verdict) + "\n";
+  const std::vector<std::string> sentences = SentencesOfVerdict(table.verdict);
+  for (const std::string& sentence : sentences) {
+    text += ParagraphText((sentences.size() > 1 ? "- " : "") + sentence);
+  }
+  if (!sentences.empty()) text += "\n";
   if (marked) text += "* best, + second\n";
   for (const std::string& line : table.foot) text += ParagraphText(line);
   return text;

@@ -128,7 +128,7 @@ std::string UndecidedClause(const MetricComparison& comparison, const ArmCompari
 
 }  // namespace
 
-std::string VerdictSentence(const MetricComparison& comparison) {
+std::string VerdictSentences(const MetricComparison& comparison) {
   if (comparison.arms.empty()) return "There is nothing to compare.";
   std::vector<std::string> clauses;
   // All of a few; of many those that are decided.
@@ -149,7 +149,7 @@ std::string VerdictSentence(const MetricComparison& comparison) {
         (all ? "nothing can be said of any of " : "nothing can be said of the other ") +
         CountText(undecided, "comparison") + " of " + comparison.metric.words);
   }
-  return SentenceOf(clauses);
+  return SentencesOf(clauses);
 }
 
 }  // namespace duet

@@ -90,14 +90,17 @@ std::string DetectableText(const MetricComparison& comparison, const PairedCompa
          (comparison.tests > 1 ? ", whatever the other tests say" : "");
 }
 
-std::string SentenceOf(const std::vector<std::string>& clauses) {
+std::string SentencesOf(const std::vector<std::string>& clauses) {
   std::string text;
-  for (const std::string& clause : clauses) text += (text.empty() ? "" : "; ") + clause;
-  // A name keeps its own spelling; what the program says begins with a capital.
-  for (const char* beginning : {"nothing can be said", "nothing is said", "the difference in"}) {
-    if (text.starts_with(beginning)) text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  for (std::string clause : clauses) {
+    // A name keeps its own spelling; what the program says begins with a capital.
+    for (const char* beginning :
+         {"nothing can be said", "nothing is said", "the difference in", "the covariance", "of "}) {
+      if (clause.starts_with(beginning)) clause[0] = static_cast<char>(clause[0] - 'a' + 'A');
+    }
+    text += (text.empty() ? "" : "\n") + clause + ".";
   }
-  return text + ".";
+  return text;
 }
 
 }  // namespace duet

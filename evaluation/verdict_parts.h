@@ -37,7 +37,8 @@ namespace duet {
 [[nodiscard]] std::string DetectableText(const MetricComparison& comparison,
                                          const PairedComparison& paired);
 
-/// Clauses with semicolons between them, a capital where the program's words begin, a full stop.
-[[nodiscard]] std::string SentenceOf(const std::vector<std::string>& clauses);
+/// Each clause as a sentence on a line of its own: a capital where the program's words begin, a
+/// full stop.
+[[nodiscard]] std::string SentencesOf(const std::vector<std::string>& clauses);
 
 }  // namespace duet

@@ -142,9 +142,9 @@ Report DescribeStudy(const fs::path& folder) {
   report.tables = MakeStudyTables(study.result, TableOptionsOf(study));
   report.summary.push_back(GridSentence(study.result));
   for (const StudyTable& table : report.tables) {
-    const auto said = std::find(report.summary.begin(), report.summary.end(), table.verdict);
-    if (!table.verdict.empty() && said == report.summary.end()) {
-      report.summary.push_back(table.verdict);
+    for (const std::string& sentence : SentencesOfVerdict(table.verdict)) {
+      const auto said = std::find(report.summary.begin(), report.summary.end(), sentence);
+      if (said == report.summary.end()) report.summary.push_back(sentence);
     }
   }
   for (std::size_t i = 0; i < study.result.runs.size(); ++i) {

@@ -45,8 +45,8 @@ std::string CellHtml(const TableCell& cell, const TableColumn& column, bool is_f
 
 std::string TableHtml(const StudyTable& table) {
   std::string html;
-  if (!table.verdict.empty()) {
-    html += "<p class=\"verdict\">" + EscapeHtml(table.verdict) + "</p>\n";
+  for (const std::string& sentence : SentencesOfVerdict(table.verdict)) {
+    html += "<p class=\"verdict\">" + EscapeHtml(sentence) + "</p>\n";
   }
   html += "<div class=\"table-box\" tabindex=\"0\" role=\"region\" aria-label=\"" +
           EscapeHtml(table.title) + "\">\n<table>\n<caption class=\"hidden\">" +

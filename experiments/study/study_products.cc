@@ -54,14 +54,7 @@ std::vector<std::pair<std::string, std::string>> StudyTexts(const StudyFolder& f
   const std::vector<StudyTable> tables = MakeStudyTables(folder.result, TableOptionsOf(folder));
   std::vector<std::pair<std::string, std::string>> texts = TableTexts(tables);
   texts.emplace_back("runs.csv", RunsCsv(folder.result));
-  std::string summary = StudySummaryText(folder.result, folder.study.metrics) + "\n";
-  std::set<std::string> said;
-  for (const StudyTable& table : tables) {
-    if (!table.verdict.empty() && said.insert(table.verdict).second) {
-      summary += ParagraphText(table.verdict);
-    }
-  }
-  texts.emplace_back("summary.txt", summary);
+  texts.emplace_back("summary.txt", StudySummaryText(folder.result, folder.study.metrics, tables));
   if (IsTuningFolder(folder.path)) {
     for (auto& text : TuningTexts(folder)) texts.push_back(std::move(text));
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "evaluation/study_result.h"
+#include "evaluation/study_table.h"
 #include "experiments/study/study_plan.h"
 
 namespace duet {
@@ -34,9 +35,10 @@ struct StudyFolder {
 /// runs.csv (docs/formats.md).
 [[nodiscard]] std::string RunsCsv(const StudyResult& result);
 /// Medians over the runs that did not fail, for the terminal: one row for each stream, estimator,
-/// setting and perturbation. `metrics`: empty for a choice.
+/// setting and perturbation; and what `tables` say. `metrics`: empty for a choice.
 [[nodiscard]] std::string StudySummaryText(const StudyResult& result,
-                                           const std::vector<std::string>& metrics);
+                                           const std::vector<std::string>& metrics,
+                                           const std::vector<StudyTable>& tables);
 
 /// How runs ended that left no record: failures/<id> of a study's folder.
 [[nodiscard]] std::filesystem::path FailureFile(const std::filesystem::path& folder,

@@ -5,10 +5,11 @@
 
 namespace duet {
 
-std::string StudySummaryText(const StudyResult& result, const std::vector<std::string>& metrics) {
+std::string StudySummaryText(const StudyResult& result, const std::vector<std::string>& metrics,
+                             const std::vector<StudyTable>& tables) {
   const std::vector<std::string> choice = {"ate.position_m", "ate.orientation_deg",
                                            "coverage_share", "frame_ms.median"};
-  return TableText(SummaryTable(result, metrics.empty() ? choice : metrics));
+  return TableText(SummaryTable(result, metrics.empty() ? choice : metrics, tables));
 }
 
 }  // namespace duet

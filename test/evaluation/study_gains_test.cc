@@ -96,7 +96,7 @@ TEST(StudyGains, WhoGainsMoreIsSaidInOneSentence) {
   EXPECT_NEAR(all.paired.ratio, 0.5 / 0.6, 0.03);
   EXPECT_NEAR(gains.changes[0].first_gain, 0.5, 0.015);
   EXPECT_NEAR(gains.changes[0].second_gain, 0.6, 0.015);
-  const std::string sentence = GainsSentence(gains);
+  const std::string sentence = GainsSentences(gains);
   EXPECT_THAT(sentence, testing::ContainsRegex(
                             "^t_d estimated instead of t_d fixed helps msckf 1.[12][0-9]+ times as "
                             "much as window: position error \\(ATE\\) becomes 0.[45][0-9]+ times "
@@ -117,7 +117,7 @@ TEST(StudyGains, WhoGainsMoreIsSaidInOneSentence) {
 TEST(StudyGains, WhatCostsTheOneMoreIsSaidAsACost) {
   const MetricGains gains =
       GainsOf(MakeGainStudy({.msckf_gain = 2.4, .window_gain = 2.0}), GainOptions());
-  EXPECT_THAT(GainsSentence(gains),
+  EXPECT_THAT(GainsSentences(gains),
               testing::ContainsRegex("^t_d estimated instead of t_d fixed costs msckf 1.[12][0-9]+ "
                                      "times as much as window: "));
 }
@@ -125,7 +125,7 @@ TEST(StudyGains, WhatCostsTheOneMoreIsSaidAsACost) {
 TEST(StudyGains, EqualGainsAreNoVerdictThoughTheErrorsDifferThreefold) {
   const MetricGains gains = GainsOf(MakeGainStudy({.window_gain = 0.5}), GainOptions());
   EXPECT_EQ(gains.changes[0].arms.overall().decision, Decision::kNothing);
-  EXPECT_THAT(GainsSentence(gains),
+  EXPECT_THAT(GainsSentences(gains),
               testing::StartsWith("Nothing can be said of whether t_d estimated instead of t_d "
                                   "fixed helps msckf or window more in position error (ATE): "));
 }
@@ -180,7 +180,7 @@ TEST(StudyGains, WhoGainsByCoveringLessIsNotCalledBetter) {
   }
   const MetricGains gains = GainsOf(study, GainOptions());
   EXPECT_EQ(gains.changes[0].arms.overall().decision, Decision::kCoversLess);
-  EXPECT_THAT(GainsSentence(gains), HasSubstr("since with it msckf covers less of the span"));
+  EXPECT_THAT(GainsSentences(gains), HasSubstr("since with it msckf covers less of the span"));
   // Who covers less with the baseline too gains by no such thing.
   for (StudyRun& run : study.runs) {
     if (run.estimator == "msckf") run.metrics[1].second = 0.9;
@@ -204,8 +204,8 @@ TEST(StudyGains, SharesAreComparedByDifferences) {
   const ComparisonRow& all = gains.changes[0].arms.overall();
   EXPECT_EQ(all.decision, Decision::kSecondBetter);
   EXPECT_NEAR(all.paired.difference, 0.08, 0.005);
-  EXPECT_THAT(GainsSentence(gains), testing::ContainsRegex("helps window 0.0[78]"));
-  EXPECT_THAT(GainsSentence(gains), HasSubstr(" more for window and 0.02"));
+  EXPECT_THAT(GainsSentences(gains), testing::ContainsRegex("helps window 0.0[78]"));
+  EXPECT_THAT(GainsSentences(gains), HasSubstr(" more for window and 0.02"));
 }
 
 TEST(StudyGains, WithoutABaselineOrAValueThereIsNoTable) {

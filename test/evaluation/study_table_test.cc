@@ -366,15 +366,21 @@ TEST(StudyTable, SummaryHasTheNumbersOfTheTables) {
     run.metrics[2].second = 2.0 * run.seed * run.seed;
     run.metrics.emplace_back("frame_ms.median", 1.2345);
   }
+  // What the tables say, once.
+  std::vector<StudyTable> said(3);
+  said[0].verdict = "One is better.\nNothing can be said of two.";
+  said[1].verdict = said[2].verdict = "None failed.";
   const StudyTable table = SummaryTable(
-      study, {"coverage_share", "calibration.t_d.error", "nees.pose", "frame_ms.median"});
+      study, {"coverage_share", "calibration.t_d.error", "nees.pose", "frame_ms.median"}, said);
   EXPECT_EQ(table.columns[4].title, "error of t_d at the end");
   EXPECT_EQ(table.columns[4].unit, "s");
   const std::string text = TableText(table);
   EXPECT_THAT(text, testing::StartsWith("synthetic: who?\n"));
   EXPECT_THAT(text, testing::ContainsRegex("msckf +3 +0 +0.990 +0.001000 +9.33 +1.23"));
   EXPECT_THAT(text, HasSubstr("of errors with a sign, of their magnitudes; of NEES the"));
-  EXPECT_THROW((void)SummaryTable(study, {"ate.positon_m"}), InputError);
+  EXPECT_THAT(text,
+              HasSubstr("\n\n- One is better.\n- Nothing can be said of two.\n- None failed.\n\n"));
+  EXPECT_THROW((void)SummaryTable(study, {"ate.positon_m"}, {}), InputError);
 }
 
 TEST(FailureReasons, ThoseThatDifferInNumbersAloneAreOne) {
@@ -397,7 +403,7 @@ TEST(StudyTable, SettingsAreComparedWithTheBaselineForEachEstimator) {
   const auto tables = PositionTables(synthetic, options);
   const StudyTable& paired = TableNamed(tables, "ate.position_m.paired");
   EXPECT_THAT(paired.verdict, HasSubstr("msckf (default) has the smaller position error"));
-  EXPECT_THAT(paired.verdict, HasSubstr("; window (default) has the smaller position error"));
+  EXPECT_THAT(paired.verdict, HasSubstr(".\nwindow (default) has the smaller position error"));
   options.baseline = "shrot";
   EXPECT_THROW(PositionTables(synthetic, options), InputError);
 }
@@ -453,7 +459,7 @@ TEST(StudyTable, OfManyArmsSentencesNameThoseOfWhichTheySaySomething) {
   const auto tables = MakeStudyTables(study, options);
   const std::string nees = TableNamed(tables, "nees").verdict;
   EXPECT_THAT(nees, HasSubstr("The covariance of window"));
-  EXPECT_THAT(nees, HasSubstr("; those of the other 7 are refuted in none of 21 tests."));
+  EXPECT_THAT(nees, HasSubstr(".\nThe covariances of the other 7 are refuted in none of 21 tests."));
   EXPECT_EQ(TableNamed(tables, "sensitivity").verdict,
             "Of all measures of the position none says who is better in 4 of the pairs.");
 }
