@@ -11,6 +11,7 @@
 #include "common/support/sha256.h"
 #include "common/support/text_file.h"
 #include "experiments/simulation/scenario.h"
+#include "experiments/study/study_told.h"
 
 namespace duet {
 namespace {
@@ -94,7 +95,8 @@ StudyRecording LookAt(const StudyFile& study, const StudyStream& stream, const f
   return {.path = path,
           .fingerprint = recording.fingerprint,
           .has_images = recording.vision == Vision::kImages,
-          .frames = static_cast<int>(recording.FrameStamps().size())};
+          .frames = static_cast<int>(recording.FrameStamps().size()),
+          .rig = recording.rig};
 }
 
 /// Makes the grid, stream by stream.
@@ -150,6 +152,7 @@ class Planner {
     }
     const double rate_hz = options.camera_rate_hz;
     frames_ = static_cast<int>(options.duration_s * rate_hz) + 1;
+    rig_ = TrueRigOf(options);
   }
 
   void SkipMissing() {
@@ -176,6 +179,7 @@ class Planner {
                                 ? found->second
                                 : LookAt(study(), stream, path);
     frames_ = plan_.recordings[key].frames;
+    rig_ = plan_.recordings[key].rig;
   }
 
   static bool Draws(const StudyStream& stream, const CalibrationPriors& priors) {
@@ -196,6 +200,7 @@ class Planner {
     cell.draw_seed = 1;
     for (const std::string& estimator : study().estimators) {
       cell.estimator = estimator;
+      RequireToldIsPossible(plan_, cell, rig_);
       ConfigSources sources = SourcesOfRun(plan_, cell);
       Configuration configuration;
       configuration.Read(&sources);
@@ -278,7 +283,8 @@ class Planner {
   StudyPlan plan_;
   const fs::path data_;
   const StudyRecordings& known_;
-  int frames_ = 0;  // of the stream that is being added
+  int frames_ = 0;                     // of the stream that is being added
+  std::optional<RigCalibration> rig_;  // likewise, where it is known
   std::map<std::tuple<int, int, int>, int> inputs_;
 };
 
