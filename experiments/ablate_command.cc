@@ -157,7 +157,15 @@ void RunOnSimulation(const CommandLine& line, Ablation* ablation) {
   configuration.Read(&sources);
   options.shared = configuration.shared;
   options.start = configuration.initialization;
-  options.settle_s = configuration.evaluation.nees_settle_s;
+  RequireEvaluationDefaults(
+      sources.values(),
+      {{"association", "in duet ablate --simulate, where the truth is known at every instant"},
+       {"max_truth_gap_s", "in duet ablate --simulate, where the truth is known at every instant"},
+       {"relative_lengths_m", "in duet ablate, which takes no relative errors"}});
+  const EvaluationSettings& evaluation = configuration.evaluation;
+  options.settle_s = evaluation.nees_settle_s;
+  options.alignment = evaluation.alignment;
+  options.alignment_options = evaluation.Options().alignment_options;
   options.told_from_priors = false;
   ablation->plan = ReadPlan(configuration.shared);
   ablation->cells = RunPlan(
@@ -202,6 +210,11 @@ void CheckToldOf(const AblationPlan& plan, const RigCalibration& rig) {
 void RunOnRecording(const CommandLine& line, Ablation* ablation) {
   Session& session = ablation->session;
   session = OpenSession(line, FLAGS_dataset, FLAGS_tracks);
+  RequireEvaluationDefaults(
+      session.sources.values(),
+      {{"nees_settle_s",
+        "in duet ablate --dataset, which claims no NEES and takes errors over all states"},
+       {"relative_lengths_m", "in duet ablate, which takes no relative errors"}});
   if (!session.recording.truth) {
     throw InputError(session.recording.folder.string() +
                      ": has no ground truth; an ablation measures against it");
@@ -255,7 +268,7 @@ int RunAblate(const CommandLine& line) {
   }
   const AblationClaims claims{
       .consistency = simulated,
-      .nees_settle_s = ablation.simulation.settle_s,
+      .evaluation = ablation.session.configuration.evaluation,
       .predicted_sigma = [&](const AblationCell& cell) { return predictions[&cell]; }};
   const std::string text = AblationText(cells, claims);
   WriteTextFile(record.path() / "ablation.txt", text);
@@ -299,9 +312,10 @@ Command AblateCommand() {
           "(simulation only), cost, and the calibration's errors at the end beside what was "
           "reported; writes ablation.json, runs.csv and calibration.csv (the data of the "
           "convergence curves: error and sigma of every component over time). On a recording "
-          "estimates are compared with its own calibration, which is no truth. --set takes the "
-          "keys of duet config and, "
-          "with --simulate, of simulation (duet simulate).",
+          "estimates are compared with its own calibration, which is no truth. Errors are those of "
+          "duet compare: evaluation.alignment and, of a recording, evaluation.association say how "
+          "they are taken. --set takes the keys of duet config and, with --simulate, of simulation "
+          "(duet simulate).",
       .example =
           "duet ablate --simulate excited --states t_d,p_CB,intrinsics --seeds 1..10 --out "
           "ablation",

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
+#include "common/config/config_sources.h"
 #include "evaluation/evaluate.h"
 
 namespace duet {
@@ -69,5 +71,15 @@ struct EvaluationSettings {
     return options;
   }
 };
+
+/// A setting of `evaluation:` that something has no use for, by its name there.
+struct UnusedSetting {
+  std::string name;
+  std::string why;  ///< "in duet ablate, which ..."
+};
+
+/// Throws InputError where one of them is not its default. `values` are those in force.
+void RequireEvaluationDefaults(const std::vector<ResolvedValue>& values,
+                               const std::vector<UnusedSetting>& unused);
 
 }  // namespace duet

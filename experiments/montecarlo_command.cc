@@ -31,11 +31,20 @@ int RunMonteCarloCommand(const CommandLine& line) {
   configuration.Read(&sources);
   options.shared = configuration.shared;
   options.start = configuration.initialization;
-  options.settle_s = configuration.evaluation.nees_settle_s;
+  const EvaluationSettings& evaluation = configuration.evaluation;
+  RequireEvaluationDefaults(
+      sources.values(),
+      {{"association", "in duet montecarlo, where the truth is known at every instant"},
+       {"max_truth_gap_s", "in duet montecarlo, where the truth is known at every instant"},
+       {"relative_lengths_m", "in duet montecarlo, which takes no relative errors"}});
+  options.settle_s = evaluation.nees_settle_s;
+  options.alignment = evaluation.alignment;
+  options.alignment_options = evaluation.Options().alignment_options;
   const MonteCarloResult result = RunMonteCarlo(options, [&](const EstimatorSetup& setup) {
     return MakeEstimator(FLAGS_backend, setup, configuration.backends);
   });
   std::fputs(MonteCarloText(FLAGS_backend, result).c_str(), stdout);
+  std::printf("  ATE after alignment %s\n", AlignmentModeName(evaluation.alignment));
   return kDone;
 }
 

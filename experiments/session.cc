@@ -14,10 +14,8 @@
 #include "experiments/progress.h"
 
 namespace duet {
-namespace {
 
-// The bounds that estimates stay within hold what they start from.
-void CheckBounds(const RigCalibration& told, const SharedOptions& shared) {
+void CheckTimeBounds(const RigCalibration& told, const SharedOptions& shared) {
   const auto check = [](const std::string& name, double value_s, double bound_s) {
     if (std::abs(value_s) <= bound_s) return;
     throw InputError("shared.max_abs_" + name + "_s: is " + FormatNumber(bound_s) +
@@ -27,15 +25,13 @@ void CheckBounds(const RigCalibration& told, const SharedOptions& shared) {
   check("t_r", told.t_r_s, shared.max_abs_t_r_s);
 }
 
-}  // namespace
-
 EstimatorSetup Session::SetupWith(const SharedOptions& shared) const {
   EstimatorSetup setup{.rig = ToldRig(recording.rig, shared.calibration),
                        .imu_noise = shared.imu_noise_factors.Times(recording.imu_sensor.noise),
                        .g_G = recording.g_G(),
                        .shared = shared};
   CheckTold(setup.rig, shared.calibration);
-  CheckBounds(setup.rig, shared);
+  CheckTimeBounds(setup.rig, shared);
   return setup;
 }
 

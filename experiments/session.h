@@ -34,6 +34,10 @@ struct Session {
   [[nodiscard]] EstimatorStart StartWith(const EstimatorSetup& setup) const;
 };
 
+/// Throws InputError where |t_d| or |t_r| is above its bound (shared.max_abs_*), which estimates
+/// stay within: it is to hold what they start from.
+void CheckTimeBounds(const RigCalibration& told, const SharedOptions& shared);
+
 /// Reads configuration and recording. Tracks are taken from `tracks_folder` where it is not empty,
 /// else what the recording has: images before tracks. Throws InputError.
 [[nodiscard]] Session OpenSession(const CommandLine& line, const std::string& dataset,

@@ -80,7 +80,8 @@ CellSummary SummarizeCell(const AblationCell& cell, const AblationClaims& claims
   summary.frame_ms = Summarize(frame_ms);
   std::vector<double> further_p_values;
   if (claims.consistency) {
-    for (const BlockConsistency& block : SummarizeRuns(cell.runs, claims.nees_settle_s).blocks) {
+    for (const BlockConsistency& block :
+         SummarizeRuns(cell.runs, claims.evaluation.nees_settle_s).blocks) {
       if (block.block != NeesBlock::kPose) continue;
       summary.pose = block;
       further_p_values.push_back(block.p_value);
@@ -147,6 +148,24 @@ nlohmann::ordered_json CalibrationJson(const CalibrationBlockSummary& block) {
   return json;
 }
 
+// How the errors of the table were taken.
+std::string ErrorsFoot(const AblationClaims& claims) {
+  const EvaluationSettings& evaluation = claims.evaluation;
+  std::string text = std::string("Errors after alignment ") +
+                     AlignmentModeName(evaluation.alignment) +
+                     ", positions and orientations apart; ";
+  if (claims.consistency) {
+    return text + "truth at the state's instant; states from " +
+           FormatNumber(evaluation.nees_settle_s) + " s after the first on.\n";
+  }
+  if (evaluation.association == AssociationMode::kInterpolated) {
+    return text + "truth interpolated over at most " + FormatNumber(evaluation.max_truth_gap_s) +
+           " s; all states.\n";
+  }
+  return text + "pairs of \"" + AssociationModeName(evaluation.association) +
+         "\" (nearest in time), for comparing with that program only.\n";
+}
+
 }  // namespace
 
 std::string AblationText(const std::vector<AblationCell>& cells, const AblationClaims& claims) {
@@ -183,7 +202,7 @@ std::string AblationText(const std::vector<AblationCell>& cells, const AblationC
                                      : OwnCalibrationText(summary.calibration));
     }
   }
-  return table.Text() + details;
+  return table.Text() + ErrorsFoot(claims) + details;
 }
 
 nlohmann::ordered_json AblationJson(const std::vector<AblationCell>& cells,
@@ -197,6 +216,7 @@ nlohmann::ordered_json AblationJson(const std::vector<AblationCell>& cells,
         {"estimated", cell.variant.estimated},
         {"runs", cell.runs.size()},
         {"failed", summary.failed},
+        {"alignment", AlignmentModeName(claims.evaluation.alignment)},
         {"ate_position_m", Spread(summary.position_m)},
         {"ate_orientation_deg", Spread(summary.orientation_deg)},
         {"least_coverage_s", summary.coverage_s},

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "experiments/ablation/ablation.h"
+#include "experiments/evaluation_settings.h"
 
 namespace duet {
 
@@ -13,14 +14,15 @@ struct AblationClaims {
   /// NEES, its bands and verdicts, of pose and calibration: of simulations only (DESIGN.md section
   /// 5). A recording's calibration is compared with the recording's own, and nothing is claimed.
   bool consistency = false;
-  double nees_settle_s = 2.0;  ///< it counts from this long after a run's first state
+  EvaluationSettings evaluation = {};  ///< that the runs' errors and NEES were taken by
   /// What the motion allows this estimator's cell at the end, over its calibration's components;
   /// empty where there is no prediction.
   std::function<Eigen::VectorXd(const AblationCell& cell)> predicted_sigma;
 };
 
 /// The tables of an ablation: accuracy, consistency and cost of every cell, then, for every cell
-/// that estimates something, its calibration at the end.
+/// that estimates something, its calibration at the end; at the foot of the first how errors were
+/// taken.
 [[nodiscard]] std::string AblationText(const std::vector<AblationCell>& cells,
                                        const AblationClaims& claims);
 /// The same as JSON.

@@ -1,36 +1,43 @@
 #include "experiments/ablation/recorded_run.h"
 
-#include <cmath>
+#include <algorithm>
 
 #include "common/measurement/gauge.h"
 #include "common/measurement/told_errors.h"
 #include "common/support/stage_timer.h"
-#include "evaluation/association.h"
-#include "evaluation/errors.h"
+#include "evaluation/evaluate.h"
 #include "evaluation/statistics.h"
 #include "experiments/imu_feed.h"
 
 namespace duet {
 namespace {
 
+// As duet compare: poses within the frames' span, jumps of the truth left out.
 void AddAccuracy(const Session& session, const EstimatorSetup& setup,
                  const std::vector<StampedPose>& estimate, MonteCarloRun* run) {
-  const Association association = Associate(session.TruthFor(setup), estimate, {});
-  const std::vector<PosePair>& pairs = association.pairs;
-  if (pairs.size() < 3) {
+  const std::vector<StampedPose> truth = session.TruthFor(setup);
+  const std::vector<Timestamp> stamps = session.recording.FrameStamps();
+  EvaluationOptions options = session.configuration.evaluation.Options();
+  options.start = std::max(stamps.front(), truth.front().timestamp);
+  options.end = std::min(stamps.back(), truth.back().timestamp);
+  const Evaluation evaluation =
+      Evaluate({session.recording.truth_file, truth}, {{"estimate", estimate}}, options);
+  const TrajectoryEvaluation& result = evaluation.estimates.front();
+  if (result.association.pairs.size() < 3) {
     run->failed = true;
     run->reason = "fewer than three of its poses have a truth";
     return;
   }
-  const AbsoluteErrors errors = ComputeAbsoluteErrors(pairs, AlignmentMode::kPositionYaw);
-  if (!std::isfinite(errors.position_m.rmse)) {
+  const AbsoluteErrors& errors = result.absolute;
+  if (errors.alignment.refusal != AlignmentRefusal::kNone) {
     run->failed = true;
-    run->reason = "its poses can't be aligned with the truth, which stands still";
+    run->reason = std::string("its poses can't be aligned with the truth: ") +
+                  AlignmentRefusalText(errors.alignment.refusal);
     return;
   }
   run->ate_position_m = errors.position_m.rmse;
   run->ate_orientation_deg = errors.orientation_deg.rmse;
-  run->coverage_s = association.coverage_s;
+  run->coverage_s = result.association.coverage_s;
 }
 
 }  // namespace

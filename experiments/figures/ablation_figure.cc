@@ -103,6 +103,9 @@ Figure AblationMatrixFigure(const FigureInput& input) {
 
   Figure figure;
   figure.sources = {input.folders.front().string() + " (duet ablate)"};
+  if (const std::string alignment = JsonText(cells.front(), "alignment"); !alignment.empty()) {
+    figure.notes = {"Errors after alignment " + alignment + "."};
+  }
   const std::size_t rows = std::min(variants.size(), kMostVariants);
   const auto cell_of = [&](const std::string& estimator, const std::string& variant) {
     return std::find_if(cells.begin(), cells.end(), [&](const nlohmann::ordered_json& cell) {

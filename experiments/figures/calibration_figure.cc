@@ -156,8 +156,10 @@ std::vector<FigureRun> FromFirstEstimating(const std::vector<FigureRun>& all,
 }  // namespace
 
 Figure CalibrationFigure(const FigureInput& input) {
-  const std::vector<FigureRun> all = FindRuns(input.folders);
-  const std::vector<FigureRun> runs = ExampleRuns(FromFirstEstimating(all, input.components));
+  const FoundRuns all = FindRuns(input);
+  FoundRuns estimating = all;
+  estimating.chosen = FromFirstEstimating(all.chosen, input.components);
+  const std::vector<FigureRun> runs = ExampleRuns(estimating);
   std::vector<RecordTable> states;
   for (const FigureRun& run : runs) states.push_back(ReadRecordTable(run.folder / "states.csv"));
   const std::vector<std::string> components = ChosenComponents(

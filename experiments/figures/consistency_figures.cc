@@ -71,7 +71,7 @@ MeanNees MeanOverRuns(const std::vector<RunOnInput>& runs, NeesBlock block) {
 }  // namespace
 
 Figure NeesOverTimeFigure(const FigureInput& input) {
-  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const FoundRuns all = FindRuns(input);
   const std::vector<FigureRun> runs = RunsOfFirstGroup(all);
   Figure figure;
   figure.sources = DescribeSources(runs);

@@ -178,15 +178,16 @@ Axis LogarithmicAxisAround(std::string label, double low, double high) {
 }  // namespace
 
 Figure CostAgainstAccuracyFigure(const FigureInput& input) {
-  const std::vector<FigureRun> all = FindRuns(input.folders);
-  const std::set<std::string> streams = StreamsWithFirst(all.front());
+  const FoundRuns all = FindRuns(input);
+  const std::set<std::string> streams = StreamsWithFirst(all.chosen.front());
   std::vector<FigureRun> runs;
-  for (const FigureRun& run : all) {
+  for (const FigureRun& run : all.chosen) {
     if (streams.contains(run.where.stream) &&
-        run.where.perturbation == all.front().where.perturbation) {
+        run.where.perturbation == all.chosen.front().where.perturbation) {
       runs.push_back(run);
     }
   }
+  RequireEachChosen(runs, all.choice);
   Figure figure;
   figure.sources = DescribeSources(runs);
   const std::vector<std::string> estimators = EstimatorsOf(runs);
@@ -279,7 +280,7 @@ Figure CostAgainstAccuracyFigure(const FigureInput& input) {
 }
 
 Figure TimeByStageFigure(const FigureInput& input) {
-  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const FoundRuns all = FindRuns(input);
   const std::vector<FigureRun> runs = RunsOfFirstGroup(all);
   const std::vector<std::string> estimators = EstimatorsOf(runs);
   constexpr const char* kPrefix = "estimator.";

@@ -13,7 +13,7 @@ constexpr std::array<const char*, 3> kAxisNames = {"x", "y", "z"};
 
 // Three panels, one an axis: what is true minus estimate, and the lines at +-3 sigma.
 Figure ErrorFigure(const FigureInput& input, bool position) {
-  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const FoundRuns all = FindRuns(input);
   const std::vector<FigureRun> runs = ExampleRuns(all);
   Figure figure;
   figure.sources = DescribeSources(runs);
@@ -75,7 +75,7 @@ Figure PositionErrorFigure(const FigureInput& input) { return ErrorFigure(input,
 Figure OrientationErrorFigure(const FigureInput& input) { return ErrorFigure(input, false); }
 
 Figure RmseOverRunsFigure(const FigureInput& input) {
-  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const FoundRuns all = FindRuns(input);
   const std::vector<FigureRun> runs = RunsOfFirstGroup(all);
   Figure figure;
   figure.sources = DescribeSources(runs);

@@ -1,7 +1,6 @@
 #include "experiments/figures/figure_runs.h"
 
 #include <algorithm>
-#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -197,9 +196,9 @@ nlohmann::ordered_json ReadJsonFile(const fs::path& file) {
   }
 }
 
-std::vector<FigureRun> FindRuns(const std::vector<fs::path>& folders) {
+FoundRuns FindRuns(const FigureInput& input) {
   std::vector<FigureRun> runs;
-  for (const fs::path& folder : folders) {
+  for (const fs::path& folder : input.folders) {
     if (!fs::exists(folder)) throw InputError(folder, 0, "", "does not exist; expected a folder");
     if (IsRun(folder)) {
       runs.push_back(ReadRun(fs::absolute(folder).lexically_normal()));
@@ -229,14 +228,15 @@ std::vector<FigureRun> FindRuns(const std::vector<fs::path>& folders) {
                      "expected the folder of a study, of duet compare or of duet run");
   }
   TellPlainRunsApart(&runs);
-  LabelRuns(&runs);
-  return runs;
+  std::vector<FigureRun> chosen = ChosenRuns(runs, input.choice);
+  LabelRuns(&chosen);
+  return {.found = std::move(runs), .chosen = std::move(chosen), .choice = input.choice};
 }
 
-std::vector<FigureRun> ExampleCells(const std::vector<FigureRun>& runs) {
+std::vector<FigureRun> ExampleCells(const FoundRuns& runs) {
   std::vector<FigureRun> cells;
-  const FigureRun& first = FirstWithRecord(runs);
-  for (const FigureRun& run : runs) {
+  const FigureRun& first = FirstWithRecord(runs.chosen);
+  for (const FigureRun& run : runs.chosen) {
     const bool same = run.study.empty() ? run.where.stream == first.where.stream
                                         : run.where.stream == first.where.stream &&
                                               run.where.setting == first.where.setting &&
@@ -244,10 +244,11 @@ std::vector<FigureRun> ExampleCells(const std::vector<FigureRun>& runs) {
                                               run.where.seed == first.where.seed;
     if (same && run.study.empty() == first.study.empty()) cells.push_back(run);
   }
+  RequireEachChosen(cells, runs.choice);
   return cells;
 }
 
-std::vector<FigureRun> ExampleRuns(const std::vector<FigureRun>& runs) {
+std::vector<FigureRun> ExampleRuns(const FoundRuns& runs) {
   std::vector<FigureRun> examples;
   for (const FigureRun& run : ExampleCells(runs)) {
     if (run.has_record() && examples.size() < kMostExamples) examples.push_back(run);
@@ -256,10 +257,10 @@ std::vector<FigureRun> ExampleRuns(const std::vector<FigureRun>& runs) {
   return examples;
 }
 
-std::vector<FigureRun> RunsOfFirstGroup(const std::vector<FigureRun>& runs) {
+std::vector<FigureRun> RunsOfFirstGroup(const FoundRuns& runs) {
   std::vector<FigureRun> group;
-  const StudyRun& first = FirstWithRecord(runs).where;
-  for (const FigureRun& run : runs) {
+  const StudyRun& first = FirstWithRecord(runs.chosen).where;
+  for (const FigureRun& run : runs.chosen) {
     const bool again = std::any_of(group.begin(), group.end(), [&run](const FigureRun& other) {
       return OnOneRecording(run, other) && run.where.estimator == other.where.estimator;
     });
@@ -269,29 +270,22 @@ std::vector<FigureRun> RunsOfFirstGroup(const std::vector<FigureRun>& runs) {
                                                   run.where.perturbation == first.perturbation;
     if (of_group) group.push_back(run);
   }
+  RequireEachChosen(group, runs.choice);
   LabelRuns(&group);
   return group;
 }
 
-std::string DrawnNote(const std::vector<FigureRun>& all, const std::vector<FigureRun>& drawn) {
+std::string DrawnNote(const FoundRuns& runs, const std::vector<FigureRun>& drawn) {
   if (drawn.empty() || drawn.front().study.empty()) return "";
-  struct Coordinate {
-    const char* name;
-    std::string (*value)(const StudyRun& where);
-    const char* silent;  // goes without saying where there is no other
-  };
-  static constexpr std::array<Coordinate, 4> kCoordinates = {
-      Coordinate{"stream", [](const StudyRun& where) { return where.stream; }, ""},
-      Coordinate{"setting", [](const StudyRun& where) { return where.setting; }, "default"},
-      Coordinate{"perturbation", [](const StudyRun& where) { return where.perturbation; }, "none"},
-      Coordinate{"seed", [](const StudyRun& where) { return std::to_string(where.seed); }, ""}};
   std::string note;
-  for (const Coordinate& coordinate : kCoordinates) {
+  for (const RunCoordinate& coordinate : RunCoordinates()) {
     std::set<std::string> of_all, of_drawn;
-    for (const FigureRun& run : all) of_all.insert(coordinate.value(run.where));
+    for (const FigureRun& run : runs.found) of_all.insert(coordinate.value(run.where));
     for (const FigureRun& run : drawn) of_drawn.insert(coordinate.value(run.where));
     const std::string count = std::to_string(of_all.size());
     if (of_all.size() == 1 && *of_all.begin() == coordinate.silent) continue;
+    const bool of_estimators = coordinate.chosen == &RunChoice::estimators;
+    if (of_estimators && of_drawn.size() == of_all.size()) continue;  // the legend has them all
     note += note.empty() ? "Drawn: " : ", ";
     if (of_drawn.size() == 1) {
       note += std::string(coordinate.name) + " " + *of_drawn.begin();

@@ -7,6 +7,8 @@
 
 #include "evaluation/study_result.h"
 #include "experiments/figures/figure.h"
+#include "experiments/figures/figures.h"
+#include "experiments/figures/run_choice.h"
 
 namespace duet {
 
@@ -22,30 +24,47 @@ struct FigureRun {
   [[nodiscard]] bool has_record() const { return !folder.empty(); }
 };
 
+/// What a figure may draw, in the order of the folders and, of a study, of its grid.
+struct FoundRuns {
+  std::vector<FigureRun> found;   ///< all in the folders
+  std::vector<FigureRun> chosen;  ///< those of them that figures are made of; one has a record
+  RunChoice choice;
+};
+
 /// The run records in folders that may be studies (runs/<id>), of `duet compare` (one folder an
 /// estimator) or of one run, in their order; runs that failed too. Throws InputError for a folder
-/// that is none of these, naming what it expected.
-[[nodiscard]] std::vector<FigureRun> FindRuns(const std::vector<std::filesystem::path>& folders);
+/// that is none of these, naming what it expected, and for a choice as ChosenRuns does.
+[[nodiscard]] FoundRuns FindRuns(const FigureInput& input);
+
+/// Those of `found` that a choice leaves (run_choice.cc). Of records that are of no study the
+/// stream is the recording's name, and seed, setting and perturbation do not exist. Throws
+/// InputError for an unknown name, naming the nearest, where no run with a record is left, and
+/// where one of several names has no run among them.
+[[nodiscard]] std::vector<FigureRun> ChosenRuns(const std::vector<FigureRun>& found,
+                                                const RunChoice& choice);
+/// Throws InputError where a name of the choice has no run among these.
+void RequireEachChosen(const std::vector<FigureRun>& drawn, const RunChoice& choice);
 
 /// What a figure over time shows of many: the runs on the same stream, setting, perturbation and
-/// seed as the first that has a record; of plain records those on the first one's recording. Runs
-/// that failed are in it as far as they went. At most six.
-[[nodiscard]] std::vector<FigureRun> ExampleRuns(const std::vector<FigureRun>& runs);
+/// seed as the first chosen that has a record; of plain records those on the first one's recording.
+/// Runs that failed are in it as far as they went. At most six.
+[[nodiscard]] std::vector<FigureRun> ExampleRuns(const FoundRuns& runs);
 
-/// Which runs statistics are over: those on the first one's stream, setting and perturbation,
-/// whatever their seed; of plain records the first of each estimator on each recording.
-[[nodiscard]] std::vector<FigureRun> RunsOfFirstGroup(const std::vector<FigureRun>& runs);
+/// Which runs statistics are over: those chosen on the first one's stream, setting and
+/// perturbation, whatever their seed; of plain records the first of each estimator on each
+/// recording.
+[[nodiscard]] std::vector<FigureRun> RunsOfFirstGroup(const FoundRuns& runs);
 
-/// For a figure's notes, of a study: which of its streams, settings, perturbations and seeds are
-/// drawn, and of how many: "Drawn: stream room (of 3), seed 1 (of 8)." Empty of plain records.
-[[nodiscard]] std::string DrawnNote(const std::vector<FigureRun>& all,
-                                    const std::vector<FigureRun>& drawn);
+/// For a figure's notes, of a study: which of its streams, settings, perturbations and seeds (and,
+/// where some are left out, estimators) are drawn, and of how many found: "Drawn: stream room (of
+/// 3), seed 1 (of 8)." Empty of plain records.
+[[nodiscard]] std::string DrawnNote(const FoundRuns& runs, const std::vector<FigureRun>& drawn);
 
 /// For a figure's notes: "5 of 8 runs of window failed: left out." Empty where none of `runs` did.
 [[nodiscard]] std::string FailedNote(const std::vector<FigureRun>& runs, const std::string& so);
 
 /// The cells where ExampleRuns are taken from, those without a record too.
-[[nodiscard]] std::vector<FigureRun> ExampleCells(const std::vector<FigureRun>& runs);
+[[nodiscard]] std::vector<FigureRun> ExampleCells(const FoundRuns& runs);
 
 /// Adds a note that is not empty.
 void AddNote(std::string note, Figure* figure);

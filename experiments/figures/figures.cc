@@ -15,60 +15,66 @@ namespace {
 struct Maker {
   const char* name;
   const char* summary;
+  DrawnRuns drawn;
   Figure (*make)(const FigureInput& input);
 };
 
 const std::vector<Maker>& Makers() {
   static const std::vector<Maker> makers = {
-      {"trajectory_top", "Estimated trajectories and the truth from above.", TrajectoryTopFigure},
+      {"trajectory_top", "Estimated trajectories and the truth from above.", DrawnRuns::kOneCell,
+       TrajectoryTopFigure},
       {"trajectory_side", "Estimated trajectories and the truth from the side.",
-       TrajectorySideFigure},
-      {"position_error", "Position error over time, each axis with +-3 sigma.",
+       DrawnRuns::kOneCell, TrajectorySideFigure},
+      {"position_error", "Position error over time, each axis with +-3 sigma.", DrawnRuns::kOneCell,
        PositionErrorFigure},
       {"orientation_error", "Orientation error over time, each axis with +-3 sigma.",
-       OrientationErrorFigure},
+       DrawnRuns::kOneCell, OrientationErrorFigure},
       {"rmse_over_runs", "Position and orientation RMSE of every run, by seed.",
-       RmseOverRunsFigure},
+       DrawnRuns::kOverSeeds, RmseOverRunsFigure},
       {"nees_over_time", "NEES of the pose, mean over runs, with its 95 % chi-squared band.",
-       NeesOverTimeFigure},
+       DrawnRuns::kOverSeeds, NeesOverTimeFigure},
       {"relative_errors", "Relative errors as boxes by the length of the segments.",
-       RelativeErrorsFigure},
+       DrawnRuns::kOverSeeds, RelativeErrorsFigure},
       {"calibration",
        "Estimated calibration over time with +-3 sigma, the truth and what was told.",
-       CalibrationFigure},
+       DrawnRuns::kOneCell, CalibrationFigure},
       {"ablation_matrix", "What estimating each part of the calibration changes; of duet ablate.",
-       AblationMatrixFigure},
+       DrawnRuns::kNone, AblationMatrixFigure},
       {"cost_against_accuracy", "Median time a frame against position RMSE, by setting.",
-       CostAgainstAccuracyFigure},
+       DrawnRuns::kOverSettings, CostAgainstAccuracyFigure},
       {"time_by_stage", "Where the time of a frame goes, and its p50, p95, p99 and maximum.",
-       TimeByStageFigure},
+       DrawnRuns::kOverSeeds, TimeByStageFigure},
       {"track_lengths", "How long tracks are; of a run's stream or of a recording with tracks.",
-       TrackLengthsFigure},
+       DrawnRuns::kOneStream, TrackLengthsFigure},
       {"parallax", "How much parallax tracks have; as track_lengths, with the true orientation.",
-       ParallaxFigure},
-      {"allan", "Allan deviations of an IMU at rest and their fit; of duet allan.", AllanFigure},
+       DrawnRuns::kOneStream, ParallaxFigure},
+      {"allan", "Allan deviations of an IMU at rest and their fit; of duet allan.",
+       DrawnRuns::kNone, AllanFigure},
       {"information_spectrum",
        "Eigenvalues of the information matrix; of runs or of a file of duet observability.",
-       InformationSpectrumFigure},
+       DrawnRuns::kOneCell, InformationSpectrumFigure},
       {"normalized_errors",
        "Errors over their standard deviations against the standard normal distribution.",
-       NormalizedErrorsFigure},
-      {"whiteness", "Autocorrelation of the normalized errors over the lag.", WhitenessFigure},
+       DrawnRuns::kOverSeeds, NormalizedErrorsFigure},
+      {"whiteness", "Autocorrelation of the normalized errors over the lag.", DrawnRuns::kOverSeeds,
+       WhitenessFigure},
       {"thesis_3_2", "Gyroscope at rest with its normal fit; of a recording that begins at rest.",
-       Thesis32Figure},
-      {"thesis_3_8", "The car of thesis 3.4: its position; needs no records.", Thesis38Figure},
-      {"thesis_3_9", "The car of thesis 3.4: its position error with +-3 sigma.", Thesis39Figure},
+       DrawnRuns::kOneStream, Thesis32Figure},
+      {"thesis_3_8", "The car of thesis 3.4: its position; needs no records.", DrawnRuns::kNone,
+       Thesis38Figure},
+      {"thesis_3_9", "The car of thesis 3.4: its position error with +-3 sigma.", DrawnRuns::kNone,
+       Thesis39Figure},
       {"thesis_3_10", "The car of thesis 3.4: errors of position and velocity with +-3 sigma.",
-       Thesis310Figure},
+       DrawnRuns::kNone, Thesis310Figure},
       {"thesis_5_4",
        "When the rows of a rolling shutter's images are taken; an example, or a run's.",
-       Thesis54Figure},
+       DrawnRuns::kOneRun, Thesis54Figure},
       {"thesis_6_3", "Structure of H_x, the filter's Jacobian of one feature; needs no records.",
-       Thesis63Figure},
+       DrawnRuns::kNone, Thesis63Figure},
       {"thesis_8_1", "Position and orientation errors after SE(3) alignment with their RMS.",
-       Thesis81Figure},
+       DrawnRuns::kOneCell, Thesis81Figure},
       {"thesis_8_2", "The truth and the two estimators from above, after SE(3) alignment.",
-       Thesis82Figure},
+       DrawnRuns::kOneCell, Thesis82Figure},
   };
   return makers;
 }
@@ -115,6 +121,7 @@ Figure ComposeFigure(const std::string& name, const FigureInput& input) {
   for (const Maker& maker : Makers()) {
     names.emplace_back(maker.name);
     if (name != maker.name) continue;
+    RequireEffect(input.choice, name, maker.drawn);
     Figure figure = Made(maker, input);
     figure.name = name;
     if (figure.title.empty()) figure.title = maker.summary;

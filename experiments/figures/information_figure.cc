@@ -86,13 +86,14 @@ Figure InformationSpectrumFigure(const FigureInput& input) {
   const bool observability =
       input.folders.size() == 1 && std::filesystem::is_regular_file(input.folders.front());
   if (observability) {
+    RequireNoChoice(input.choice, "a file of duet observability");
     AddObservability(input.folders.front(), &panel);
     figure.sources = {input.folders.front().string() + " (duet observability)"};
     figure.notes = {
         "Eigenvalues of the calibration's information matrix at the end, all else eliminated, in "
         "units of the priors: 1 is nothing learnt."};
   } else {
-    const std::vector<FigureRun> all = FindRuns(input.folders);
+    const FoundRuns all = FindRuns(input);
     const std::vector<FigureRun> runs = ExampleRuns(all);
     const std::vector<Look> looks = LooksOf(runs);
     for (std::size_t n = 0; n < runs.size(); ++n) AddRun(runs[n], looks[n], &panel);

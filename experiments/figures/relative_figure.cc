@@ -54,7 +54,7 @@ std::string LengthText(double length_m) {
 }  // namespace
 
 Figure RelativeErrorsFigure(const FigureInput& input) {
-  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const FoundRuns all = FindRuns(input);
   const std::vector<FigureRun> runs = RunsOfFirstGroup(all);
   const std::vector<std::string> estimators = EstimatorsOf(runs);
   std::map<double, std::map<std::string, LengthErrors>> errors;

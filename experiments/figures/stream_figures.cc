@@ -31,15 +31,16 @@ Stream StreamOf(const FigureInput& input) {
   Stream stream;
   if (input.folders.size() == 1 && (std::filesystem::exists(input.folders.front() / "mav0") ||
                                     std::filesystem::exists(input.folders.front() / "imu0"))) {
+    RequireNoChoice(input.choice, "a recording");
     RecordingOptions options;
     options.source = RecordingOptions::Source::kTracks;
     options.check_coverage = false;
     stream.recording = LoadRecording(input.folders.front(), options);
     stream.source = input.folders.front().string();
   } else {
-    const std::vector<FigureRun> all = FindRuns(input.folders);
+    const FoundRuns all = FindRuns(input);
     const std::vector<FigureRun> runs = ExampleRuns(all);
-    stream.drawn = DrawnNote(all, {runs.front()});
+    stream.drawn = DrawnNote(all, runs);
     stream.recording = RecordingOf(runs.front());
     stream.source = DescribeSource(runs.front());
   }

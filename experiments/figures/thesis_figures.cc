@@ -83,11 +83,12 @@ Recording ImuRecordingOf(const FigureInput& input, std::string* source) {
     dataset = ReadJsonFile(folder / "allan.json").value("dataset", std::string());
   }
   if (!dataset.empty()) {
+    RequireNoChoice(input.choice, "a recording");
     const Recording recording = LoadRecording(dataset, imu_alone);
     *source = dataset.string() + " (" + recording.fingerprint.substr(0, 16) + ")";
     return recording;
   }
-  const std::vector<FigureRun> runs = ExampleRuns(FindRuns(input.folders));
+  const std::vector<FigureRun> runs = ExampleRuns(FindRuns(input));
   *source = DescribeSource(runs.front());
   return RecordingOf(runs.front());
 }
@@ -239,8 +240,10 @@ Figure Thesis54Figure(const FigureInput& input) {
   Figure figure;
   figure.sources = {"an example's times"};
   std::string drawn;
-  if (!input.folders.empty()) {  // of a run: its last estimates, where it has some, else as told
-    const std::vector<FigureRun> all = FindRuns(input.folders);
+  if (input.folders.empty()) {
+    RequireNoChoice(input.choice, "an example's times, as no --runs are given");
+  } else {  // of a run: its last estimates, where it has some, else as told
+    const FoundRuns all = FindRuns(input);
     const std::vector<FigureRun> runs = ExampleRuns(all);
     drawn = DrawnNote(all, {runs.front()});
     const Recording recording = RecordingOf(runs.front());
@@ -299,7 +302,7 @@ Figure Thesis54Figure(const FigureInput& input) {
 }
 
 Figure Thesis81Figure(const FigureInput& input) {
-  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const FoundRuns all = FindRuns(input);
   const std::vector<FigureRun> runs = ExampleRuns(all);
   Figure figure;
   figure.sources = DescribeSources(runs);

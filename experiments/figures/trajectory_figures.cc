@@ -65,7 +65,7 @@ Look LookIn(const View& view, const FigureRun& run, Look look) {
 }
 
 Figure TrajectoryFigure(const FigureInput& input, const View& view) {
-  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const FoundRuns all = FindRuns(input);
   const std::vector<FigureRun> runs = ExampleRuns(all);
   Figure figure;
   figure.sources = DescribeSources(runs);

@@ -71,7 +71,7 @@ bool AddAutocorrelation(const std::vector<double>& z, std::vector<double>* sums)
 }  // namespace
 
 Figure NormalizedErrorsFigure(const FigureInput& input) {
-  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const FoundRuns all = FindRuns(input);
   const std::vector<FigureRun> runs = RunsOfFirstGroup(all);
   const std::vector<std::string> estimators = EstimatorsOf(runs);
   const auto errors = OfEstimators(runs);
@@ -129,7 +129,7 @@ Figure NormalizedErrorsFigure(const FigureInput& input) {
 }
 
 Figure WhitenessFigure(const FigureInput& input) {
-  const std::vector<FigureRun> all = FindRuns(input.folders);
+  const FoundRuns all = FindRuns(input);
   const std::vector<FigureRun> runs = RunsOfFirstGroup(all);
   const std::vector<std::string> estimators = EstimatorsOf(runs);
   const auto errors = OfEstimators(runs);

@@ -29,15 +29,15 @@ class RunStatistics {
  public:
   // The truth is taken in the axes that the estimator's gauge ties the body to.
   RunStatistics(const SimulatedRecording& recording, const Eigen::Quaterniond& gauge,
-                double settle_s, MonteCarloRun* run)
-      : recording_(recording), gauge_(gauge), settle_s_(settle_s), run_(*run), collector_(run) {}
+                const MonteCarloOptions& options, MonteCarloRun* run)
+      : recording_(recording), gauge_(gauge), options_(options), run_(*run), collector_(run) {}
 
   void Add(const EstimatorOutput& output) {
     if (!collector_.Add(output)) return;
     const InertialState truth = Reoriented(recording_.TruthAt(output.state.instant), gauge_);
     run_.nees.samples.push_back(
         ComputeNees(output.frame_timestamp, truth, output.state, output.covariance));
-    if (run_.coverage_s < settle_s_) return;
+    if (run_.coverage_s < options_.settle_s) return;
     const Vector15d error = BoxMinus(truth, output.state);
     squares_ += error.cwiseAbs2();
     pairs_.push_back({.timestamp = output.frame_timestamp,
@@ -49,7 +49,7 @@ class RunStatistics {
     collector_.Finish();
     if (!run_.failed && pairs_.size() < 3) {
       run_.failed = true;
-      run_.reason = "fewer than three of its states come " + FormatNumber(settle_s_) +
+      run_.reason = "fewer than three of its states come " + FormatNumber(options_.settle_s) +
                     " s after the first or later (evaluation.nees_settle_s)";
     }
     run_.nees.start = collector_.first_frame();
@@ -64,7 +64,8 @@ class RunStatistics {
     run_.velocity_rms_m_per_s = rms(2);
     run_.b_g_rms_rad_per_s = rms(3);
     run_.b_a_rms_m_per_s2 = rms(4);
-    const AbsoluteErrors ate = ComputeAbsoluteErrors(pairs_, AlignmentMode::kPositionYaw);
+    const AbsoluteErrors ate =
+        ComputeAbsoluteErrors(pairs_, options_.alignment, options_.alignment_options);
     run_.ate_position_m = ate.position_m.rmse;
     run_.ate_orientation_deg = ate.orientation_deg.rmse;
   }
@@ -72,7 +73,7 @@ class RunStatistics {
  private:
   const SimulatedRecording& recording_;
   Eigen::Quaterniond gauge_;
-  double settle_s_;
+  const MonteCarloOptions& options_;
   MonteCarloRun& run_;
   OutputCollector collector_;
   Vector15d squares_ = Vector15d::Zero();
@@ -179,7 +180,7 @@ MonteCarloRun RunOnce(const MonteCarloOptions& options, int seed,
 
   run.calibration = CalibrationErrors(estimator->layout(), Reoriented(recording.true_rig, gauge));
   std::vector<double> frame_ms;
-  RunStatistics statistics(recording, gauge, options.settle_s, &run);
+  RunStatistics statistics(recording, gauge, options, &run);
   const Timestamp horizon = ToNanoseconds(ImuHorizon(shared));
   ImuFeed feed(recording.imu);
   for (const TrackFrameSet& frames : recording.frames) {

@@ -9,6 +9,7 @@
 
 #include "backends/estimator.h"
 #include "backends/initialization/initialization.h"
+#include "evaluation/alignment.h"
 #include "evaluation/calibration_errors.h"
 #include "evaluation/consistency.h"
 #include "experiments/simulation/simulator.h"
@@ -31,6 +32,10 @@ struct MonteCarloOptions {
   int runs = 20;
   int threads = 2;
   double settle_s = 2.0;  ///< evaluation.nees_settle_s
+  /// evaluation.alignment and min_spread_m, of ate_*. (The truth is known at every instant: there
+  /// is nothing to associate.)
+  AlignmentMode alignment = AlignmentMode::kPositionYaw;
+  AlignmentOptions alignment_options = {};
   /// Start errors, IMU and pixel noise and the priors of the calibration all multiplied by it.
   double noise_scale = 1.0;
 };
@@ -51,7 +56,8 @@ struct MonteCarloRun {
   double velocity_rms_m_per_s = std::numeric_limits<double>::quiet_NaN();
   double b_g_rms_rad_per_s = std::numeric_limits<double>::quiet_NaN();
   double b_a_rms_m_per_s2 = std::numeric_limits<double>::quiet_NaN();
-  /// After position + yaw alignment, and a yaw of their own for the orientations.
+  /// After the alignment asked for, positions and orientations apart (evaluation/errors.h); NaN
+  /// where it is refused, as of a truth that stands still.
   double ate_position_m = std::numeric_limits<double>::quiet_NaN();
   double ate_orientation_deg = std::numeric_limits<double>::quiet_NaN();
   long used = 0;  ///< sums of FeatureCounts

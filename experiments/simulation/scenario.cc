@@ -223,6 +223,12 @@ bool IsTrajectoryFile(const std::string& trajectory) {
          fs::is_regular_file(trajectory);
 }
 
+RigCalibration TrueRigOf(const SimulationOptions& options) {
+  Scenario scenario;
+  SetSensors(options, &scenario);
+  return scenario.true_rig;
+}
+
 Scenario MakeScenario(const SimulationOptions& options, bool textures) {
   if (!options.imu.empty()) {
     RecordedMotionOptions motion_options;

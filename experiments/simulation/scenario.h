@@ -46,6 +46,10 @@ struct Scenario {
 [[nodiscard]] Scenario MakeScenario(const SimulationOptions& options,
                                     std::shared_ptr<const Trajectory> trajectory);
 
+/// The true calibration of it alone: the sensors, without motion and world. Throws InputError for a
+/// file of sensors that does not fit.
+[[nodiscard]] RigCalibration TrueRigOf(const SimulationOptions& options);
+
 /// The stamps of the frames. Throws InputError where the motion is too short for one.
 [[nodiscard]] std::vector<Timestamp> FrameStamps(const Scenario& scenario,
                                                  const SimulationOptions& options);

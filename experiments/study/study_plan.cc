@@ -11,6 +11,7 @@
 #include "common/support/sha256.h"
 #include "common/support/text_file.h"
 #include "experiments/simulation/scenario.h"
+#include "experiments/study/study_told.h"
 
 namespace duet {
 namespace {
@@ -96,7 +97,8 @@ StudyRecording LookAt(const StudyFile& study, const StudyStream& stream, const f
   return {.path = path,
           .fingerprint = recording.fingerprint,
           .has_images = recording.vision == Vision::kImages,
-          .frames = static_cast<int>(recording.FrameStamps().size())};
+          .frames = static_cast<int>(recording.FrameStamps().size()),
+          .rig = recording.rig};
 }
 
 /// Makes the grid, stream by stream.
@@ -153,6 +155,7 @@ class Planner {
     }
     const double rate_hz = options.camera_rate_hz;
     frames_ = static_cast<int>(options.duration_s * rate_hz) + 1;
+    rig_ = TrueRigOf(options);
   }
 
   void SkipMissing() {
@@ -179,6 +182,7 @@ class Planner {
                                 ? found->second
                                 : LookAt(study(), stream, path);
     frames_ = plan_.recordings[key].frames;
+    rig_ = plan_.recordings[key].rig;
   }
 
   static bool Draws(const StudyStream& stream, const CalibrationPriors& priors) {
@@ -199,6 +203,7 @@ class Planner {
     cell.draw_seed = 1;
     for (const std::string& estimator : study().estimators) {
       cell.estimator = estimator;
+      RequireToldIsPossible(plan_, cell, rig_);
       ConfigSources sources = SourcesOfRun(plan_, cell);
       Configuration configuration;
       configuration.Read(&sources);
@@ -293,7 +298,8 @@ class Planner {
   const StudyRecordings& known_;
   // Of the stream that is being added:
   int frames_ = 0;
-  std::string stream_lines_;  // what it is, without a seed
+  std::string stream_lines_;           // what it is, without a seed
+  std::optional<RigCalibration> rig_;  // where it is known
   std::map<std::tuple<int, int, int>, int> inputs_;
 };
 

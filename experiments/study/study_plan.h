@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@ struct StudyRecording {
   std::string fingerprint;
   bool has_images = false;
   int frames = 0;
+  std::optional<RigCalibration> rig = {};  ///< where it has been read; not in recordings.json
 };
 /// By dataset and cameras as the file gives them ("MH_01_easy [0]").
 using StudyRecordings = std::map<std::string, StudyRecording>;

@@ -105,6 +105,64 @@ TEST(AblateTest, RunsWithoutAStateAreFailedRunsAndNoCrash) {
   ASSERT_EQ(recorded.status, 0) << recorded.err;
   EXPECT_THAT(recorded.out, HasSubstr("failed: window, t_d, seed 1 after 0.0 s: "));
   EXPECT_THAT(recorded.out, testing::Not(HasSubstr("NEES")));
+  const ProgramResult settled =
+      RunDuet({"ablate", "--dataset", folder / "data", "--states", "t_d", "--seeds", "1..1",
+               "--set", "evaluation.nees_settle_s=1", "--out", folder / "settled"});
+  EXPECT_EQ(settled.status, 2);
+  EXPECT_THAT(settled.err, HasSubstr("evaluation.nees_settle_s: has no effect in duet ablate "
+                                     "--dataset, which claims no NEES"));
+}
+
+// evaluation.* is heeded: on a recording the errors of the same runs are duet compare's own.
+TEST(AblateTest, ErrorsAreTakenAsTheConfigurationSaysAndTheTableSaysHow) {
+  TemporaryFolder folder;
+  const ProgramResult made =
+      RunDuet({"simulate", "--preset", "excited", "--set", "duration_s=3", "--set", "max_tracks=40",
+               "--out", folder / "data", "--quiet"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const std::vector<std::string> shared = {"--dataset",
+                                           folder / "data",
+                                           "--init",
+                                           "groundtruth",
+                                           "--quiet",
+                                           "--set",
+                                           "evaluation.association=evo",
+                                           "--set",
+                                           "evaluation.alignment=se3"};
+  std::vector<std::string> ablate = {"ablate",  "--states", "t_d",   "--perturb",        "none",
+                                     "--seeds", "1..1",     "--out", folder / "ablation"};
+  ablate.insert(ablate.end(), shared.begin(), shared.end());
+  std::vector<std::string> compare = {"compare", "--out", folder / "compare"};
+  compare.insert(compare.end(), shared.begin(), shared.end());
+  const ProgramResult ablated = RunDuet(ablate);
+  ASSERT_EQ(ablated.status, 0) << ablated.err;
+  EXPECT_THAT(ablated.out, HasSubstr("\nErrors after alignment se3, positions and orientations "
+                                     "apart; pairs of \"evo\" (nearest in time)"));
+  const ProgramResult compared = RunDuet(compare);
+  ASSERT_EQ(compared.status, 0) << compared.err;
+  const auto comparison = nlohmann::json::parse(ReadFile(folder / "compare/comparison.json"));
+  int untouched = 0;  // cells that estimate nothing, as duet compare by default
+  for (const auto& cell : nlohmann::json::parse(ReadFile(folder / "ablation/ablation.json"))) {
+    EXPECT_EQ(cell["alignment"], "se3");
+    if (cell["variant"] != "none") continue;
+    const auto& ate = comparison[cell["estimator"].get<std::string>()]["ate"];
+    // The poses are the same, but for how their files are read back.
+    EXPECT_NEAR(cell["ate_position_m"]["median"], ate["position_m"], 1e-9);
+    EXPECT_NEAR(cell["ate_orientation_deg"]["median"], ate["orientation_deg"], 1e-9);
+    ++untouched;
+  }
+  EXPECT_EQ(untouched, 2);
+  // Of a simulation the first state's error is in the errors where nothing is aligned.
+  const auto position_m = [&](const std::string& alignment) {
+    const ProgramResult result = RunDuet(Ablate(
+        folder / alignment, {"--set", "evaluation.alignment=" + alignment, "--backends", "msckf"},
+        "t_d", "1..1"));
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("\nErrors after alignment " + alignment + ", positions"));
+    const auto cells = nlohmann::json::parse(ReadFile(folder / alignment + "/ablation.json"));
+    return cells[1]["ate_position_m"]["median"].get<double>();
+  };
+  EXPECT_GT(position_m("none"), position_m("posyaw"));
 }
 
 TEST(AblateTest, BadInputIsOneClearLine) {
@@ -124,6 +182,13 @@ TEST(AblateTest, BadInputIsOneClearLine) {
        "shared.calibration.cameras: names camera 1; expected cameras of the rig"},
       {Ablate(out, {"--perturb", folder / "focal.yaml"}),
        "told_offset.intrinsics_px: the told fx of camera 0 is -41"},
+      {Ablate(out, {"--set", "evaluation.association=evo"}),
+       "evaluation.association: has no effect in duet ablate --simulate, where the truth is known "
+       "at every instant; expected the default, interpolated"},
+      {Ablate(out, {"--set", "evaluation.max_truth_gap_s=0.1"}),
+       "evaluation.max_truth_gap_s: has no effect in duet ablate --simulate"},
+      {Ablate(out, {"--set", "evaluation.relative_lengths_m=[1]"}),
+       "evaluation.relative_lengths_m: has no effect in duet ablate, which takes no relative"},
       {Ablate(out, {"--jobs", "0"}), "--jobs: is 0; expected at least 1"},
       {Ablate(out, {"--duration", "3"}), "--duration: has no effect beside --simulate"},
       {Ablate(out, {"--dataset", folder / "x"}), "expected either --dataset or --simulate"}};

@@ -151,6 +151,35 @@ TEST_F(FigureTest, TrackLengthsCountEveryTrackOfTheStreamAndNameItsHash) {
   EXPECT_EQ(sum, static_cast<double>(ids.size()));
 }
 
+// The grid's coordinates are chosen by flags; a choice that has no effect is no choice.
+TEST_F(FigureTest, OneEstimatorIsDrawnWhereItIsChosen) {
+  const auto draw = [&](const std::string& name, const std::vector<std::string>& choice) {
+    std::vector<std::string> words = {
+        "figure", name, "--runs", *folder_ / "compare", "--out", *folder_ / "chosen"};
+    words.insert(words.end(), choice.begin(), choice.end());
+    return RunDuet(words);
+  };
+  const ProgramResult drawn = draw("position_error", {"--estimator", "window"});
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  const std::string csv = ReadFile(*folder_ / "chosen/position_error.csv");
+  EXPECT_THAT(csv, HasSubstr("compare/window (window): duet "));
+  EXPECT_THAT(csv, Not(HasSubstr("msckf")));
+  const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
+      {{"--estimator", "windw"}, "no run is of estimator 'windw'; did you mean 'window'?"},
+      {{"--stream", "romo"}, "no run is of stream 'romo'; did you mean 'room'?"},
+      {{"--seed", "one"}, "--seed: 'one' is no whole number"},
+      {{"--seed", "1"}, "--seed: the runs have no seed: they are of duet run or duet compare"},
+      {{"--setting", "default"}, "--setting: the runs have no setting"}};
+  for (const auto& [choice, message] : refused) {
+    const ProgramResult result = draw("orientation_error", choice);
+    EXPECT_EQ(result.status, 2) << message;
+    EXPECT_THAT(result.err, HasSubstr(message));
+  }
+  EXPECT_THAT(draw("thesis_3_8", {"--stream", "room"}).err,
+              HasSubstr("--stream: has no effect on duet figure thesis_3_8"));
+  EXPECT_FALSE(std::filesystem::exists(*folder_ / "chosen/orientation_error.csv"));
+}
+
 TEST_F(FigureTest, BadInputIsOneLine) {
   const ProgramResult unknown = Draw("positon_error");
   EXPECT_EQ(unknown.status, 2);

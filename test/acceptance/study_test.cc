@@ -4,6 +4,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -298,6 +299,22 @@ TEST_F(StudyTest, VerifyFindsWhatIsMissingChangedOrOfAnotherVersion) {
   const ProgramResult missing = verify();
   EXPECT_EQ(missing.status, 1);
   EXPECT_THAT(missing.out, HasSubstr("runs/" + name + ": is missing"));
+}
+
+// Before anything is simulated, tracked or written.
+TEST_F(StudyTest, AToldCalibrationThatCannotBeIsRefusedAtOnce) {
+  WriteFile(study_, std::string(kTinyStudy) +
+                        "perturbations: [{name: none}, {name: far, set: "
+                        "{shared.calibration.told_offset.intrinsics_px: [-500, 0, 0, 0]}}]\n");
+  const std::vector<std::vector<std::string>> ways = {{"--jobs", "1"}, {"--dry-run"}, {"--plan"}};
+  for (const std::vector<std::string>& way : ways) {
+    const ProgramResult result = Run(out_, way);
+    EXPECT_EQ(result.status, 2) << way.front();
+    EXPECT_THAT(result.err, HasSubstr("tiny.yaml: perturbations.far: on stream room: "
+                                      "shared.calibration.told_offset.intrinsics_px: the told fx"));
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_FALSE(fs::exists(out_)) << way.front();
+  }
 }
 
 TEST_F(StudyTest, AFolderInUseOrOfSomethingElseIsRefused) {

@@ -139,6 +139,26 @@ TEST(AblationReport, CountsFailedRunsWhereTheyLeftTheirPrior) {
   EXPECT_THAT(AblationRunsCsv({cell}, claims), HasSubstr("\nmsckf,t_d,0,1,0,3,1,,,"));
 }
 
+// The foot says what the errors above it are.
+TEST(AblationReport, SaysHowErrorsWereTaken) {
+  const std::vector<AblationCell> cells = {{.estimator = "msckf",
+                                            .variant = {.name = "t_d", .estimated = {"t_d"}},
+                                            .runs = {RunOfTimeOffset(0.001, 9, false)}}};
+  AblationClaims claims = Claims(false);
+  EXPECT_THAT(AblationText(cells, claims),
+              HasSubstr("\nErrors after alignment posyaw, positions and orientations apart; truth "
+                        "interpolated over at most 0.06 s; all states.\n"));
+  EXPECT_EQ(AblationJson(cells, claims).front()["alignment"], "posyaw");
+  claims.evaluation.alignment = AlignmentMode::kSe3;
+  claims.evaluation.association = AssociationMode::kRpgNearest;
+  EXPECT_THAT(AblationText(cells, claims),
+              HasSubstr("alignment se3, positions and orientations apart; pairs of \"rpg\""));
+  claims.consistency = true;
+  claims.evaluation.nees_settle_s = 3.0;
+  EXPECT_THAT(AblationText(cells, claims), HasSubstr("states from 3 s after the first on."));
+  EXPECT_EQ(AblationJson(cells, claims).front()["alignment"], "se3");
+}
+
 // A recording's own calibration is no truth: what is said of it claims no consistency.
 TEST(AblationReport, ClaimsNoConsistencyOfARecording) {
   const std::vector<AblationCell> cells = {{.estimator = "msckf",
@@ -202,6 +222,27 @@ TEST(RunOnce, HasNoErrorWithoutStatesToTakeItOver) {
   EXPECT_GT(all.ate_position_m, 0.0);
   EXPECT_GT(late.ate_position_m, 0.0);
   EXPECT_NE(late.ate_position_m, all.ate_position_m);
+}
+
+// Without alignment the error is the unaligned one; the freer the alignment, the smaller.
+TEST(RunOnce, TakesItsErrorAfterTheAlignmentAskedFor) {
+  MonteCarloOptions options;
+  options.simulation = SimulationPreset("excited");
+  options.simulation.duration_s = 1.5;
+  options.simulation.max_tracks = 40;
+  options.settle_s = 0.0;
+  const auto run = [&](AlignmentMode mode) {
+    options.alignment = mode;
+    return RunOnce(options, 1,
+                   [&](const EstimatorSetup& setup) { return MakeEstimator("msckf", setup, {}); });
+  };
+  const MonteCarloRun none = run(AlignmentMode::kNone);
+  EXPECT_NEAR(none.ate_position_m, none.position_rms_m, 1e-12);
+  const double posyaw_m = run(AlignmentMode::kPositionYaw).ate_position_m;
+  EXPECT_LT(posyaw_m, none.ate_position_m);
+  EXPECT_LT(run(AlignmentMode::kSe3).ate_position_m, posyaw_m);
+  options.alignment_options.min_spread_m = 100.0;  // further than the motion reaches
+  EXPECT_TRUE(std::isnan(run(AlignmentMode::kPositionYaw).ate_position_m));
 }
 
 TEST(OutputCollector, TakesEachStateOnce) {

@@ -236,5 +236,79 @@ INSTANTIATE_TEST_SUITE_P(
         BadPlan{WithStream("{name: MH, dataset: nowhere/MH_01_easy}", ""),
                 "nowhere/MH_01_easy does not exist; expected a recording (--data"}));
 
+// What no seed could start with is said before anything is simulated or tracked, by the change
+// without which it would not be so.
+TEST(StudyPlanTest, AToldCalibrationThatCannotBeIsRefusedByName) {
+  const std::string offset = "shared.calibration.told_offset.";
+  const auto error_of = [](const std::string& rest) -> std::string {
+    try {
+      PlanOf(WithStream(kRoom, rest));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  const std::string focal = offset + "intrinsics_px: [-500, 0, 0, 0]";
+  EXPECT_THAT(error_of("perturbations: [{name: none}, {name: far, set: {" + focal + "}}]\n"),
+              HasSubstr("folder/s.yaml: perturbations.far: on stream room: " + offset +
+                        "intrinsics_px: the told fx of camera 0 is -41.3"));
+  // Beside a setting that has nothing to do with it; and of a setting.
+  EXPECT_THAT(error_of("settings: [{name: two, set: {shared.pixel_noise_px: 2}}]\n"
+                       "perturbations: [{name: far, set: {" +
+                       focal + "}}]\n"),
+              HasSubstr("s.yaml: perturbations.far: on"));
+  EXPECT_THAT(error_of("settings: [{name: far, set: {" + focal + "}}]\n"),
+              HasSubstr("s.yaml: settings.far: on"));
+  EXPECT_THAT(error_of("settings: [{name: far, only: {window: {" + focal + "}}}]\n"),
+              HasSubstr("s.yaml: settings.far: on"));
+  EXPECT_THAT(error_of("set: {" + focal + "}\n"), HasSubstr("s.yaml: set: on stream room"));
+  // Times beyond their bounds, which a setting may widen; lists of a wrong length; no such camera.
+  const std::string late = "perturbations: [{name: late, set: {" + offset + "t_r_s: [0.08]}}]\n";
+  EXPECT_THAT(error_of(late), HasSubstr("perturbations.late: on stream room: shared.max_abs_t_r_s: "
+                                        "is 0.05; expected at least the told t_r, 0.08 s"));
+  EXPECT_EQ(error_of("settings: [{name: wide, set: {shared.max_abs_t_r_s: 0.1}}]\n" + late),
+            "no error");
+  EXPECT_THAT(error_of("perturbations: [{name: p, set: {" + offset + "t_d_s: [0.01, 0.02]}}]\n"),
+              HasSubstr("perturbations.p: on stream room: " + offset + "t_d_s: has 2 numbers"));
+  EXPECT_THAT(error_of("settings: [{name: b, set: {shared.calibration.cameras: [1]}}]\n"),
+              HasSubstr("settings.b: on stream room: shared.calibration.cameras: names camera 1"));
+  // The gauge: what is estimated by the setting, and how the axes are tied by the perturbation.
+  EXPECT_THAT(
+      error_of("settings: [{name: all, set: {shared.calibration.T_g.state: estimated, "
+               "shared.calibration.T_a.state: estimated, shared.calibration.R_CB.state: "
+               "estimated}}]\n"
+               "perturbations: [{name: tied, set: {shared.calibration.imu_frame: camera}}]\n"),
+      HasSubstr("settings.all, perturbations.tied: on stream room: shared.calibration.imu_frame: "
+                "camera ties"));
+  // What is drawn is no matter of the configuration.
+  EXPECT_EQ(error_of("perturbations: [{name: p, set: {shared.calibration.told_errors."
+                     "intrinsics_px: 400}}]\nseeds: 1..9\n"),
+            "no error");
+}
+
+// Of a recording by its own calibration, where that has been read.
+TEST(StudyPlanTest, AToldCalibrationIsHeldAgainstTheRecordingsOwn) {
+  RigCalibration rig;
+  rig.cameras.resize(1);
+  CameraModel::Parameters parameters(9);
+  parameters << 100.0, 100.0, 376.0, 240.0, 0.0, 0.0, 0.0, 0.0, 0.0;
+  rig.cameras[0].model = CameraModel(DistortionModel::kRadialTangential, 752, 480, parameters);
+  StudyRecordings known = {
+      {"/gone/MH [0]", {.path = "/gone/MH", .fingerprint = "f", .frames = 40, .rig = rig}}};
+  const auto plan = [&] {
+    return MakeStudyPlan(
+        ParseStudyFile(WithStream("{name: MH, dataset: /gone/MH, init: rest}",
+                                  "perturbations: [{name: far, set: {shared.calibration.told_offset"
+                                  ".intrinsics_px: [-150, 0, 0, 0]}}]\n"),
+                       "s.yaml", false),
+        "", known);
+  };
+  EXPECT_THAT(plan, ThrowsMessage<InputError>(HasSubstr(
+                        "s.yaml: perturbations.far: on stream MH: shared.calibration.told_offset."
+                        "intrinsics_px: the told fx of camera 0 is -50 px")));
+  known.begin()->second.rig.reset();  // as recordings.json knows it
+  EXPECT_EQ(plan().runs.size(), 2U);
+}
+
 }  // namespace
 }  // namespace duet
