@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -18,6 +20,10 @@ namespace duet {
 namespace {
 
 constexpr std::size_t kMostComponents = 6;
+/// Where the prior is this many times as wide as what is known after the first tenth of the time,
+/// an axis that held it would show nothing else.
+constexpr double kTooWide = 3.0;
+constexpr double kBeginning = 0.1;
 constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
 
 /// How a number of the calibration is shown.
@@ -101,6 +107,26 @@ std::vector<std::string> ChosenComponents(const std::vector<std::string>& estima
   return chosen;
 }
 
+/// What an axis has to hold: everything, and what there is after the beginning.
+struct Reach {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  void Include(double value) {
+    if (!std::isfinite(value)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+};
+
+// Ends an axis where the band is once the beginning is over; true where it has been.
+bool EndAfterBeginning(const Reach& whole, const Reach& later, Axis* axis) {
+  const double width = later.high - later.low;
+  if (!(width > 0.0) || !(whole.high - whole.low > kTooWide * width)) return false;
+  axis->low = later.low - 0.1 * width;
+  axis->high = later.high + 0.1 * width;
+  return true;
+}
+
 // calibration_truth.csv of a study's record: `name,true`.
 std::map<std::string, double> TrueCalibration(const FigureRun& run) {
   std::map<std::string, double> truth;
@@ -174,12 +200,20 @@ Figure CalibrationFigure(const FigureInput& input) {
   }
   const std::vector<Look> looks = LooksOf(runs);
   bool truth_known = false;
+  double longest_s = 0.0;
+  for (const RecordTable& table : states) {
+    if (!table.stamps.empty()) {
+      longest_s = std::max(longest_s, SecondsBetween(start, table.stamps.back()));
+    }
+  }
+  bool beginning_left_out = false;
   for (const std::string& component : components) {
     const Unit unit = UnitOf(component);
     Panel panel{.x = {.label = "time after the first state [s]"},
                 .y = {.label = component + " [" + unit.name + "]"},
                 .height_mm = components.size() > 3 ? 21.0 : 28.0,
                 .share_x = component != components.back()};
+    Reach whole, later;
     for (std::size_t n = 0; n < runs.size(); ++n) {
       const std::vector<Course> courses = EstimatedCourses(states[n]);
       const Course* course = FindCourse(courses, component);
@@ -192,6 +226,10 @@ Figure CalibrationFigure(const FigureInput& input) {
         value.push_back((*values)[i] * unit.factor);
         low.push_back(((*values)[i] - 3.0 * (*sigmas)[i]) * unit.factor);
         high.push_back(((*values)[i] + 3.0 * (*sigmas)[i]) * unit.factor);
+        for (const double end : {low.back(), high.back()}) {
+          whole.Include(end);
+          if (t_s.back() >= kBeginning * longest_s) later.Include(end);
+        }
       }
       const std::vector<double> span = {t_s.front(), t_s.back()};
       const Look look = looks[n];
@@ -206,6 +244,8 @@ Figure CalibrationFigure(const FigureInput& input) {
           const auto found = from.find(component);
           if (found == from.end()) return false;
           const double level = found->second * unit.factor;
+          whole.Include(level);
+          later.Include(level);
           panel.series.push_back(LineSeries(name, name, how, span, {level, level}));
           return true;
         };
@@ -218,7 +258,13 @@ Figure CalibrationFigure(const FigureInput& input) {
           LineSeries(label + " -3 sigma", label + ", ±3σ", sigma_look, t_s, low));
       panel.series.push_back(LineSeries(label + " +3 sigma", "", sigma_look, t_s, high));
     }
+    beginning_left_out = EndAfterBeginning(whole, later, &panel.y) || beginning_left_out;
     figure.panels.push_back(std::move(panel));
+  }
+  if (beginning_left_out) {
+    figure.notes.push_back("In the first " +
+                           FormatNumber(std::round(10.0 * kBeginning * longest_s) / 10.0) +
+                           " s lines go beyond the axes: the priors are wider.");
   }
   if (!truth_known) {
     figure.notes.push_back("The records hold no true calibration (calibration_truth.csv).");

@@ -79,6 +79,12 @@ TEST(ComposedFigures, CalibrationShowsEstimateSigmasAndTruthInItsUnit) {
   EXPECT_NEAR(table.Column("msckf: t_d [ms]").at(3), 1.0, 1e-9);
   EXPECT_NEAR(table.Column("msckf +3 sigma: t_d [ms]").at(3), 1.0 + 3.0 * 10.0 / 4.0, 1e-9);
   EXPECT_NEAR(table.Column("truth: t_d [ms]").at(0), 1.5, 1e-9);
+  // Sigma falls with the frames, 10 ms / n: the prior would leave nothing to see of what is known
+  // after a tenth of the time, 1 ms +- 3 * 10 ms / 5.
+  const Figure figure = CalibrationFigure(input);
+  EXPECT_NEAR(figure.panels[0].y.low.value_or(0.0), 1.0 - 6.0 - 1.2, 1e-6);
+  EXPECT_NEAR(figure.panels[0].y.high.value_or(0.0), 1.0 + 6.0 + 1.2, 1e-6);
+  EXPECT_THAT(figure.notes.front(), HasSubstr("In the first 0.2 s lines go beyond the axes"));
   input.components = {"t_r"};
   EXPECT_THAT(RefusalOf("calibration", input), HasSubstr("did you mean 't_d'?"));
 }
