@@ -161,6 +161,12 @@ YamlNode ParseYaml(std::string_view text, const std::string& file) {
 std::string QuotedYaml(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') {
+      // A line's end would be read as a blank.
+      constexpr const char* kDigits = "0123456789abcdef";
+      quoted += std::string("\\x") + kDigits[c >> 4] + kDigits[c & 15];
+      continue;
+    }
     if (c == '"' || c == '\\') quoted += '\\';
     quoted += c;
   }

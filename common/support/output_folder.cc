@@ -52,7 +52,8 @@ std::string PartialName(const std::string& target) {
   return target + kPartial + HostName() + "-" + std::to_string(getpid());
 }
 
-OutputFolder::OutputFolder(const fs::path& target, Makers makers) : target_(target) {
+OutputFolder::OutputFolder(const fs::path& target, Makers makers, const SyncCalls& sync)
+    : target_(target), sync_(sync) {
   // "out/" and "out" are the same folder; the sibling's name needs the latter.
   if (!target_.has_filename()) target_ = target_.parent_path();
   if (target_.empty()) throw OutputError("output folder", "has an empty name");
@@ -88,20 +89,29 @@ void OutputFolder::Commit() {
   CHECK(!committed_) << target_ << " is committed already";
   // rename() would silently replace an empty folder.
   RefuseExisting(target_);
+  SyncTree(partial_, sync_);
   std::error_code error;
   fs::rename(partial_, target_, error);
   if (error)
     throw OutputError(target_.string(), "cannot be renamed into place: " + error.message());
   committed_ = true;
+  SyncPlace();
+}
+
+/// Its name in the folder that it is in.
+void OutputFolder::SyncPlace() const {
+  SyncPath(target_.has_parent_path() ? target_.parent_path() : ".", sync_);
 }
 
 bool OutputFolder::CommitUnlessThere() {
   CHECK(!committed_) << target_ << " is committed already";
   std::error_code error;
+  SyncTree(partial_, sync_);
   // A folder with files in it is never replaced by rename().
   fs::rename(partial_, target_, error);
   if (!error) {
     committed_ = true;
+    SyncPlace();
     return true;
   }
   if (!fs::exists(target_)) {

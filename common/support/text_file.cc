@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "common/support/disk_sync.h"
 #include "common/support/input_error.h"
 #include "common/support/logging.h"
 #include "common/support/partial_name.h"
@@ -80,12 +81,16 @@ void ReplaceTextFile(const std::filesystem::path& path, std::string_view text) {
   std::error_code error;
   try {
     WriteTextFile(name, text);
+    SyncPath(name);
   } catch (const OutputError&) {
     std::filesystem::remove(name, error);
     throw;
   }
   std::filesystem::rename(name, path, error);
-  if (!error) return;
+  if (!error) {
+    SyncPath(path.has_parent_path() ? path.parent_path() : ".");
+    return;
+  }
   const std::string why = error.message();
   std::filesystem::remove(name, error);
   throw OutputError(path.string(), "cannot be replaced: " + why);

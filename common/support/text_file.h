@@ -31,7 +31,7 @@ class TextFileWriter {
 void WriteTextFile(const std::filesystem::path& path, std::string_view text);
 
 /// The same for a file that others may read or replace at the same time, from other machines too:
-/// at every moment there is the old text or the new one, whole.
+/// at every moment there is the old text or the new one, whole, after a power cut too.
 void ReplaceTextFile(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace duet

@@ -42,7 +42,10 @@ const std::vector<double>* RecordTable::Find(const std::string& name) const {
 }
 
 RecordTable ReadRecordTable(const fs::path& file) {
-  const std::string csv = ReadTextFile(file);
+  return ParseRecordTable(ReadTextFile(file), file.string());
+}
+
+RecordTable ParseRecordTable(std::string_view csv, const std::string& file) {
   RecordTable table;
   std::vector<std::string> names = ReadColumnNames(csv, file);
   table.names.assign(names.begin() + 1, names.end());

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/dataset/ground_truth.h"
@@ -24,6 +25,8 @@ struct RecordTable {
   [[nodiscard]] const std::vector<double>* Find(const std::string& name) const;
 };
 [[nodiscard]] RecordTable ReadRecordTable(const std::filesystem::path& file);
+/// The same from its text; `file` is for errors. Throws InputError.
+[[nodiscard]] RecordTable ParseRecordTable(std::string_view csv, const std::string& file);
 
 /// The truth at least at the instants of a run's states, in the estimator's axes: the record's
 /// truth.csv, else that of the recording which the manifest names. Throws InputError where there is

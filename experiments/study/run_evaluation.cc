@@ -340,7 +340,10 @@ void WriteRunEvaluation(const RunEvaluation& evaluation, const fs::path& record)
 
 RunEvaluation ReadEvaluation(const fs::path& record) {
   const fs::path file = record / "evaluation.json";
-  const std::string text = ReadTextFile(file);
+  return ParseEvaluation(ReadTextFile(file), file.string());
+}
+
+RunEvaluation ParseEvaluation(std::string_view text, const std::string& file) {
   RunEvaluation evaluation;
   try {
     const auto json = nlohmann::ordered_json::parse(text);
@@ -353,7 +356,7 @@ RunEvaluation ReadEvaluation(const fs::path& record) {
       evaluation.left_out.emplace_back(key, value.get<std::string>());
     }
   } catch (const nlohmann::ordered_json::exception& error) {
-    throw InputError(file.string(), 0, "", std::string("is no evaluation: ") + error.what());
+    throw InputError(file, 0, "", std::string("is no evaluation: ") + error.what());
   }
   return evaluation;
 }

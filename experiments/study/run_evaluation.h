@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -44,5 +45,7 @@ void WriteRunEvaluation(const RunEvaluation& evaluation, const std::filesystem::
 
 /// What an evaluation.json says; its truths are not read. Throws InputError.
 [[nodiscard]] RunEvaluation ReadEvaluation(const std::filesystem::path& record);
+/// The same from its text; `file` is for errors.
+[[nodiscard]] RunEvaluation ParseEvaluation(std::string_view text, const std::string& file);
 
 }  // namespace duet

@@ -241,7 +241,8 @@ void ReadConfigFiles(StrictMap* map, const fs::path& folder, StudyFile* study) {
   if (map->Find("config") == nullptr) return;
   for (const std::string& name : map->Texts("config", {})) {
     const fs::path path = (folder / name).lexically_normal();
-    if (!fs::exists(path)) map->Fail("config", path.string() + " does not exist");
+    std::error_code error;  // no name of a file may be as long as a file's text
+    if (!fs::exists(path, error)) map->Fail("config", path.string() + " does not exist");
     AppendKeys(ParseYaml(ReadTextFile(path), path.string()), "", path.string(), &study->set);
   }
 }
@@ -367,8 +368,10 @@ StudyFile StudyOfYaml(YamlNode root, const fs::path& path, bool quick) {
   study.skip_missing = map.BoolOr("skip_missing", false);
   if (map.Find("published") != nullptr) {
     study.published = (path.parent_path() / map.Text("published")).lexically_normal().string();
-    if (!fs::is_directory(study.published))
+    std::error_code error;
+    if (!fs::is_directory(study.published, error)) {
       map.Fail("published", study.published + " is no folder");
+    }
   }
   const std::size_t runs = study.streams.size() * study.estimators.size() * study.settings.size() *
                            study.perturbations.size() *

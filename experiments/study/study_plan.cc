@@ -23,6 +23,12 @@ constexpr int kSeedDigits = 8;                // of the hash that a stream's own
 constexpr std::uint64_t kSeeds = 2000000000;  // simulation.seed ends there
 constexpr const char* kToldErrorsSeed = "shared.calibration.told_errors_seed";
 
+/// A name that is too long for any file, or lies in a folder that can't be read, is not there.
+bool IsThere(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
 void AddKeys(const std::vector<StudyKey>& keys, ConfigSources* sources) {
   for (const StudyKey& key : keys) sources->AddKey(key.key, key.value, key.file);
 }
@@ -39,12 +45,12 @@ bool IsOfFrontend(const StudyKey& key) { return key.key.starts_with("frontend.")
 std::string BesideStudy(const fs::path& study_file, const std::string& told) {
   if (told.empty() || fs::path(told).is_absolute()) return told;
   const fs::path beside = study_file.parent_path() / told;
-  return fs::exists(beside) ? fs::absolute(beside).lexically_normal().string() : told;
+  return IsThere(beside) ? fs::absolute(beside).lexically_normal().string() : told;
 }
 
 /// What a path in a simulation's settings stands for: not the path decides, but what is there.
 std::string ContentOf(const std::string& path) {
-  if (path.empty() || !fs::exists(path)) return path;
+  if (path.empty() || !IsThere(path)) return path;
   if (fs::is_regular_file(path)) return "sha256:" + Sha256Hex(ReadTextFile(path));
   RecordingOptions options;
   options.source = RecordingOptions::Source::kAny;
@@ -81,7 +87,7 @@ std::string TrackingLines(const ConfigSources& sources) {
 
 StudyRecording LookAt(const StudyFile& study, const StudyStream& stream, const fs::path& path) {
   const std::string key = "streams." + stream.name + ".dataset";
-  if (!fs::exists(path)) {
+  if (!IsThere(path)) {
     throw InputError(study.file, stream.line, key,
                      path.string() + " does not exist; expected a recording (--data names the " +
                          "folder that recordings are in)");
@@ -162,8 +168,8 @@ class Planner {
     std::vector<StudyStream>& streams = plan_.study.streams;
     std::vector<std::string> left_out;
     std::erase_if(streams, [&](const StudyStream& stream) {
-      const bool missing = !stream.simulated() && !known_.contains(RecordingKey(stream)) &&
-                           !fs::exists(stream.dataset);
+      const bool missing =
+          !stream.simulated() && !known_.contains(RecordingKey(stream)) && !IsThere(stream.dataset);
       if (missing) left_out.push_back(stream.dataset);
       return missing;
     });

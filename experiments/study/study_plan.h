@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -97,5 +98,7 @@ ConfigSources SourcesOfTracking(const StudyFile& study, const StudyStream& strea
 /// recordings.json of a study's folder, and back; empty where there is none.
 void WriteRecordings(const StudyRecordings& recordings, const std::filesystem::path& folder);
 [[nodiscard]] StudyRecordings ReadRecordings(const std::filesystem::path& folder);
+/// The same from its text; `file` is for errors. Throws InputError.
+[[nodiscard]] StudyRecordings ParseRecordings(std::string_view text, const std::string& file);
 
 }  // namespace duet

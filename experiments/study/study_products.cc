@@ -1,5 +1,6 @@
 #include "experiments/study/study_products.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -23,6 +24,13 @@ void Remove(const fs::path& file) {
   if (error) throw OutputError(file.string(), "cannot be removed: " + error.message());
 }
 
+/// Products are removed before new ones are made: nothing else may be.
+bool IsWithinFolder(const fs::path& name) {
+  return !name.empty() && name.is_relative() && name.has_filename() &&
+         std::none_of(name.begin(), name.end(),
+                      [](const fs::path& part) { return part == ".." || part == "."; });
+}
+
 /// tables/ is the study's own: whatever it does not make is of an earlier one.
 void RemoveStaleTables(const fs::path& folder,
                        const std::vector<std::pair<std::string, std::string>>& texts) {
@@ -42,12 +50,21 @@ void RemoveStaleTables(const fs::path& folder,
 std::map<std::string, std::string> ReadProducts(const fs::path& folder) {
   const fs::path file = folder / "manifest.json";
   if (!fs::exists(file)) return {};
+  return ParseProducts(ReadTextFile(file), file.string());
+}
+
+std::map<std::string, std::string> ParseProducts(std::string_view text, const std::string& file) {
+  std::map<std::string, std::string> products;
   try {
-    const Manifest manifest = Manifest::parse(ReadTextFile(file));
-    return manifest.value("products", std::map<std::string, std::string>());
+    products = Manifest::parse(text).value("products", products);
   } catch (const nlohmann::ordered_json::exception& error) {
-    throw InputError(file.string(), 0, "", std::string("is no manifest: ") + error.what());
+    throw InputError(file, 0, "", std::string("is no manifest: ") + error.what());
   }
+  for (const auto& [name, hash] : products) {
+    if (IsWithinFolder(name)) continue;
+    throw InputError(file, 0, "products." + name, "expected a file within the folder");
+  }
+  return products;
 }
 
 std::vector<std::pair<std::string, std::string>> StudyTexts(const StudyFolder& folder) {

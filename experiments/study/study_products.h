@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,10 @@ using StudyFinish = std::function<std::vector<std::string>(const StudyFolder& fo
 /// The files that `finish` has made when the study was last done, with their SHA-256; empty where
 /// it has not been done.
 [[nodiscard]] std::map<std::string, std::string> ReadProducts(const std::filesystem::path& folder);
+/// The same from the text of a manifest.json; `file` is for errors. Throws InputError, also for a
+/// file that is not within the folder.
+[[nodiscard]] std::map<std::string, std::string> ParseProducts(std::string_view text,
+                                                               const std::string& file);
 
 /// Writes the texts, calls `finish`, then writes the manifest, which lists what `finish` made. What
 /// an earlier study of this folder made and this one does not (tables of other metrics, figures

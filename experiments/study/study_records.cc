@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -178,6 +181,24 @@ void AddFoot(const StudyFolder& folder, std::vector<std::string>* foot) {
                   (version ? ", by " + version->Text() : ""));
 }
 
+/// What an id is: it names a folder of runs/ or streams/, and nothing outside of them.
+std::string FolderName(const CsvReader& reader, int column) {
+  constexpr std::size_t kLongest = 64;
+  const std::string id(reader.Text(column));
+  const bool fits = std::all_of(id.begin(), id.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+  });
+  if (id.empty() || id.size() > kLongest || !fits) {
+    reader.Fail(column, "expected an id of at most 64 letters and digits");
+  }
+  return id;
+}
+
+std::string NameIn(const CsvReader& reader, int column) {
+  if (reader.Text(column).empty()) reader.Fail(column, "is empty; expected a name");
+  return std::string(reader.Text(column));
+}
+
 std::string Quoted(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -206,20 +227,26 @@ fs::path FailureFile(const fs::path& folder, const std::string& id) {
 
 std::vector<StudyRun> ReadPlan(const fs::path& folder) {
   const fs::path file = folder / "plan.csv";
-  const std::string text = ReadTextFile(file);
-  CsvReader reader(text, file.string(),
+  return ParsePlan(ReadTextFile(file), file.string());
+}
+
+std::vector<StudyRun> ParsePlan(std::string_view text, const std::string& file) {
+  CsvReader reader(text, file,
                    {{"id", "stream_id", "stream", "estimator", "setting", "perturbation", "seed"}});
   std::vector<StudyRun> runs;
   while (reader.Next()) {
     StudyRun& run = runs.emplace_back();
-    run.id = reader.Text(0);
-    run.stream_id = reader.Text(1);
-    run.stream = reader.Text(2);
-    run.estimator = reader.Text(3);
-    run.setting = reader.Text(4);
-    run.perturbation = reader.Text(5);
-    run.seed = static_cast<int>(reader.Unsigned(6));
+    run.id = FolderName(reader, 0);
+    run.stream_id = FolderName(reader, 1);
+    run.stream = NameIn(reader, 2);
+    run.estimator = NameIn(reader, 3);
+    run.setting = NameIn(reader, 4);
+    run.perturbation = NameIn(reader, 5);
+    const std::uint64_t seed = reader.Unsigned(6);
+    if (seed > std::numeric_limits<int>::max()) reader.Fail(6, "expected the seed of a run");
+    run.seed = static_cast<int>(seed);
   }
+  reader.RequireRows();
   return runs;
 }
 

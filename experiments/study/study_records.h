@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "evaluation/study_result.h"
@@ -29,6 +30,8 @@ struct StudyFolder {
 
 /// The cells of plan.csv, without what came of them.
 [[nodiscard]] std::vector<StudyRun> ReadPlan(const std::filesystem::path& folder);
+/// The same from its text; `file` is for errors. Throws InputError.
+[[nodiscard]] std::vector<StudyRun> ParsePlan(std::string_view text, const std::string& file);
 
 /// plan.csv: one row a cell, `id,stream_id,stream,estimator,setting,perturbation,seed`.
 [[nodiscard]] std::string PlanCsv(const StudyPlan& plan);

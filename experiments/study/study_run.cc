@@ -125,7 +125,10 @@ ExitStatus RunStudyRun(const StudyPlan& plan, const PlannedRun& run, const fs::p
 
 StudyRecordInfo ReadRecordInfo(const fs::path& record) {
   const fs::path file = record / "study.json";
-  const std::string text = ReadTextFile(file);
+  return ParseRecordInfo(ReadTextFile(file), file.string());
+}
+
+StudyRecordInfo ParseRecordInfo(std::string_view text, const std::string& file) {
   StudyRecordInfo info;
   try {
     const Json json = Json::parse(text);
@@ -133,13 +136,17 @@ StudyRecordInfo ReadRecordInfo(const fs::path& record) {
     info.determined_by = json.at("determined_by").get<std::string>();
     info.stream_id = json.at("stream_id").get<std::string>();
     info.stream_sha256 = json.value("stream_sha256", "");
-    info.bytes = json.value("bytes", std::map<std::string, std::uintmax_t>());
+    const Json bytes = json.value("bytes", Json::object());
+    for (const auto& [name, size] : bytes.items()) {
+      if (!size.is_number_unsigned()) throw InputError(file, 0, "bytes." + name, "expected a size");
+      info.bytes[name] = size.get<std::uintmax_t>();
+    }
     info.unchanged = IsSealed(json);
     for (const auto& [name, hash] : json.at("sha256").items()) {
       info.files.emplace_back(name, hash.get<std::string>());
     }
   } catch (const Json::exception& error) {
-    throw InputError(file.string(), 0, "", std::string("describes no run: ") + error.what());
+    throw InputError(file, 0, "", std::string("describes no run: ") + error.what());
   }
   return info;
 }

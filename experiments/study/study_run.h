@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct StudyRecordInfo {
   bool unchanged = false;  ///< study.json gives the hash of itself that it holds
 };
 [[nodiscard]] StudyRecordInfo ReadRecordInfo(const std::filesystem::path& record);
+/// The same from its text; `file` is for errors. Throws InputError.
+[[nodiscard]] StudyRecordInfo ParseRecordInfo(std::string_view text, const std::string& file);
 
 /// What a record of this version lacks (a file that is missing or of another size, a study.json or
 /// manifest.json that can't be read), in words; empty for a whole one. Looks at sizes, not at what

@@ -176,7 +176,10 @@ std::vector<int> CamerasOfStream(const fs::path& stream_folder) {
 
 StudyStreamInfo ReadStreamInfo(const fs::path& stream_folder) {
   const fs::path file = stream_folder / "stream.json";
-  const std::string text = ReadTextFile(file);
+  return ParseStreamInfo(ReadTextFile(file), file.string());
+}
+
+StudyStreamInfo ParseStreamInfo(std::string_view text, const std::string& file) {
   try {
     const auto json = nlohmann::ordered_json::parse(text);
     return {.id = json.at("id").get<std::string>(),
@@ -185,7 +188,7 @@ StudyStreamInfo ReadStreamInfo(const fs::path& stream_folder) {
             .tracks_sha256 = json.at("tracks_sha256").get<std::string>(),
             .files = json.value("sha256", std::map<std::string, std::string>())};
   } catch (const nlohmann::ordered_json::exception& error) {
-    throw InputError(file.string(), 0, "", std::string("describes no stream: ") + error.what());
+    throw InputError(file, 0, "", std::string("describes no stream: ") + error.what());
   }
 }
 

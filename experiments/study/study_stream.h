@@ -1,7 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/dataset/recording.h"
@@ -36,6 +39,8 @@ struct StudyStreamInfo {
 [[nodiscard]] std::vector<int> CamerasOfStream(const std::filesystem::path& stream_folder);
 
 [[nodiscard]] StudyStreamInfo ReadStreamInfo(const std::filesystem::path& stream_folder);
+/// The same from its text; `file` is for errors. Throws InputError.
+[[nodiscard]] StudyStreamInfo ParseStreamInfo(std::string_view text, const std::string& file);
 
 /// What of a stream's files is not as stream.json lists it: path and what is wrong with it.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> ChangesOfStream(

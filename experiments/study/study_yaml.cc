@@ -18,6 +18,10 @@ bool IsPlain(const std::string& scalar) {
   });
 }
 
+std::string KeyYaml(const std::string& key) {
+  return IsPlain(key) && !key.empty() ? key : QuotedYaml(key);
+}
+
 /// A value in one line.
 std::string FlowYaml(const YamlNode& node) {
   switch (node.kind) {
@@ -32,7 +36,7 @@ std::string FlowYaml(const YamlNode& node) {
   std::string text;
   for (const YamlNode& item : node.items) text += (text.empty() ? "" : ", ") + FlowYaml(item);
   for (const YamlNode::Entry& entry : node.entries) {
-    text += (text.empty() ? "" : ", ") + entry.key + ": " + FlowYaml(entry.value);
+    text += (text.empty() ? "" : ", ") + KeyYaml(entry.key) + ": " + FlowYaml(entry.value);
   }
   return node.kind == YamlNode::Kind::kMap ? "{" + text + "}" : "[" + text + "]";
 }
@@ -42,7 +46,7 @@ std::string SetYaml(const std::vector<StudyKey>& set, const std::string& indent,
   if (set.empty()) return "";
   std::string text = indent + name + ":\n";
   for (const StudyKey& key : set) {
-    text += indent + "  " + key.key + ": " + FlowYaml(key.value) + "\n";
+    text += indent + "  " + KeyYaml(key.key) + ": " + FlowYaml(key.value) + "\n";
   }
   return text;
 }

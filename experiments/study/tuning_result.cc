@@ -215,23 +215,43 @@ std::string TuningYaml(const TuningFile& tuning) {
 
 bool IsTuningFolder(const fs::path& folder) { return fs::exists(folder / "tuning.yaml"); }
 
-std::vector<std::pair<std::string, std::string>> TuningTexts(const StudyFolder& folder) {
-  const fs::path file = folder.path / "tuning.yaml";
-  const YamlNode root = ParseYaml(ReadTextFile(file), file.string());
+TuningReport ParseTuningYaml(std::string_view yaml, const fs::path& file) {
+  const YamlNode root = ParseYaml(yaml, file.string());
   const YamlNode* objective = root.Find("objective");
   const YamlNode* seeds = root.Find("report_seeds");
   if (objective == nullptr || seeds == nullptr) {
     throw InputError(file.string(), 0, "", "expected objective and report_seeds");
   }
-  std::vector<StudyStream> streams;
-  if (const YamlNode* list = root.Find("report_streams")) streams = StreamsOfYaml(*list, file);
-  const std::vector<TuningTrial> trials = TuningTrials(folder.result, objective->scalar);
+  TuningReport report;
+  report.objective = objective->scalar;
+  if (!FindMetric(report.objective)) {
+    throw InputError(file.string(), objective->line, "objective",
+                     "no metric is called '" + report.objective + "'");
+  }
+  report.seeds = ParseSeeds(seeds->scalar, file.string(), seeds->line, "report_seeds");
+  if (const YamlNode* list = root.Find("report_streams"))
+    report.streams = StreamsOfYaml(*list, file);
+  return report;
+}
+
+std::vector<std::pair<std::string, std::string>> TuningTexts(const StudyFolder& folder) {
+  const fs::path file = folder.path / "tuning.yaml";
+  return TuningTexts(folder, ParseTuningYaml(ReadTextFile(file), file));
+}
+
+std::vector<std::pair<std::string, std::string>> TuningTexts(const StudyFolder& folder,
+                                                             const TuningReport& report) {
+  for (const std::string& estimator : folder.study.estimators) {
+    const bool runs = std::any_of(folder.result.runs.begin(), folder.result.runs.end(),
+                                  [&](const StudyRun& run) { return run.estimator == estimator; });
+    if (runs) continue;
+    throw InputError(folder.study.file, 0, "estimators",
+                     "has " + estimator + ", of which plan.csv has no run");
+  }
+  const std::vector<TuningTrial> trials = TuningTrials(folder.result, report.objective);
   return {{"search.csv", SearchCsv(folder.study, trials)},
-          {"search.txt", SearchText(folder.study, trials, objective->scalar)},
-          {"report.yaml",
-           ReportYaml(folder.study, trials,
-                      ParseSeeds(seeds->scalar, file.string(), seeds->line, "report_seeds"),
-                      std::move(streams))}};
+          {"search.txt", SearchText(folder.study, trials, report.objective)},
+          {"report.yaml", ReportYaml(folder.study, trials, report.seeds, report.streams)}};
 }
 
 }  // namespace duet

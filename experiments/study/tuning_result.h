@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -37,14 +38,26 @@ struct TuningTrial {
 [[nodiscard]] const TuningTrial& BestTrial(const std::vector<TuningTrial>& trials,
                                            const std::string& estimator);
 
-/// tuning.yaml of a search's folder: the objective and the report's seeds.
+/// tuning.yaml of a search's folder: the objective and what the report runs on.
+struct TuningReport {
+  std::string objective;
+  SeedRange seeds{1, 1};
+  std::vector<StudyStream> streams;  ///< empty: the search's
+};
 [[nodiscard]] std::string TuningYaml(const TuningFile& tuning);
+/// Back; `file` is for errors. Throws InputError.
+[[nodiscard]] TuningReport ParseTuningYaml(std::string_view yaml,
+                                           const std::filesystem::path& file);
 [[nodiscard]] bool IsTuningFolder(const std::filesystem::path& folder);
 
 /// What is made of a search's records: search.csv (every trial with its values), search.txt (what
 /// won and what it bought) and report.yaml (a study of the defaults against what won, on the
-/// report's seeds).
+/// report's seeds). Throws InputError where plan.csv lacks an estimator of the study, or has a
+/// setting that the study has not.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> TuningTexts(
     const StudyFolder& folder);
+/// The same with what its tuning.yaml says.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> TuningTexts(
+    const StudyFolder& folder, const TuningReport& report);
 
 }  // namespace duet

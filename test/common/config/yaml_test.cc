@@ -35,6 +35,13 @@ TEST(Yaml, AcceptsOpenCvsFirstLineAndMatrixTag) {
   EXPECT_EQ(ParseYaml("%YAML:1.0\na: 3\n", "f.yaml").Find("a")->scalar, "3");
 }
 
+TEST(Yaml, AQuotedTextReadsBackWhateverIsInIt) {
+  std::string text = "\"a\\ \xc3\xa9";
+  for (char c = '\x01'; c < ' '; ++c) text += c;
+  text += "\x7f end\n";
+  EXPECT_EQ(ParseYaml("k: " + QuotedYaml(text) + "\n", "f").Find("k")->scalar, text);
+}
+
 TEST(Yaml, AnEmptyDocumentIsNothing) {
   EXPECT_EQ(ParseYaml("", "f.yaml").kind, YamlNode::Kind::kNull);
   EXPECT_EQ(ParseYaml("# only a comment\n", "f.yaml").kind, YamlNode::Kind::kNull);

@@ -1,8 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <deque>
 #include <filesystem>
+#include <vector>
 
 #include "common/support/input_error.h"
 #include "common/support/output_folder.h"
@@ -14,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
+using testing::UnorderedElementsAre;
 
 class OutputTest : public testing::Test {
  protected:
@@ -107,6 +112,115 @@ TEST_F(OutputTest, OfSeveralMakersOneIsKeptWhole) {
   WriteTextFile(third.path() / "file.txt", "third");
   EXPECT_FALSE(third.CommitUnlessThere());
   EXPECT_EQ(CountEntries(), 1);
+}
+
+// What was synced, by its path at that time, and what the next syncs answer.
+std::vector<std::string> synced;
+std::deque<int> sync_errors;
+int NotedSync(int descriptor) {
+  std::error_code error;
+  synced.push_back(fs::read_symlink("/proc/self/fd/" + std::to_string(descriptor), error).string());
+  if (sync_errors.empty()) return 0;
+  errno = sync_errors.front();
+  sync_errors.pop_front();
+  return errno == 0 ? 0 : -1;
+}
+
+constexpr SyncCalls kNoted = {NotedSync, nullptr};
+constexpr SyncCalls kNotedAtOnce = {NotedSync, NotedSync};
+
+class SyncTest : public OutputTest {
+ protected:
+  void SetUp() override {
+    OutputTest::SetUp();
+    synced.clear();
+    sync_errors.clear();
+  }
+  // A folder of two files, one of them in a folder of its own.
+  static void Write(const fs::path& folder) {
+    WriteTextFile(folder / "a.csv", "a");
+    fs::create_directory(folder / "in");
+    WriteTextFile(folder / "in" / "b.csv", "b");
+  }
+};
+
+TEST_F(SyncTest, AllOfAFolderIsOnTheDiskBeforeItHasItsName) {
+  OutputFolder out(folder_ / "run", OutputFolder::Makers::kOne, kNoted);
+  Write(out.path());
+  const std::string partial = fs::canonical(out.path()).string();
+  out.Commit();
+  if (!fs::exists("/proc/self/fd")) GTEST_SKIP() << "no /proc to tell what a descriptor is of";
+  ASSERT_EQ(synced.size(), 5U);
+  const std::string last = synced.back();
+  EXPECT_THAT(synced, UnorderedElementsAre(partial, partial + "/a.csv", partial + "/in",
+                                           partial + "/in/b.csv", fs::canonical(folder_).string()));
+  EXPECT_EQ(last, fs::canonical(folder_).string());
+  EXPECT_EQ(synced[3], partial) << "after its files";
+}
+
+TEST_F(SyncTest, OneCallForTheFileSystemDoesForAllFiles) {
+  {
+    OutputFolder out(folder_ / "run", OutputFolder::Makers::kOne, kNotedAtOnce);
+    Write(out.path());
+    out.Commit();
+    EXPECT_EQ(synced.size(), 2U) << "the file system, and the name";
+  }
+  // Where there is no such call, file by file.
+  synced.clear();
+  sync_errors = {ENOSYS};
+  OutputFolder out(folder_ / "another", OutputFolder::Makers::kSeveral, kNotedAtOnce);
+  Write(out.path());
+  EXPECT_TRUE(out.CommitUnlessThere());
+  EXPECT_EQ(synced.size(), 6U);
+  // A disk that can't hold it is an error at once.
+  sync_errors = {ENOSPC};
+  OutputFolder full(folder_ / "full", OutputFolder::Makers::kOne, kNotedAtOnce);
+  EXPECT_THAT([&] { full.Commit(); },
+              ThrowsMessage<OutputError>(HasSubstr("cannot be written to disk: ")));
+  EXPECT_FALSE(fs::exists(folder_ / "full"));
+}
+
+TEST_F(SyncTest, AFolderThatTheDiskCannotHoldIsAnErrorAndNotThere) {
+  for (const int error : {EIO, ENOSPC, EDQUOT}) {
+    for (const std::size_t fails : {0, 1, 2, 3}) {
+      {
+        OutputFolder out(folder_ / "run", OutputFolder::Makers::kSeveral, kNoted);
+        Write(out.path());
+        sync_errors.assign(fails, 0);
+        sync_errors.push_back(error);
+        EXPECT_THAT([&] { (void)out.CommitUnlessThere(); },
+                    ThrowsMessage<OutputError>(HasSubstr("cannot be written to disk: ")));
+      }
+      EXPECT_EQ(CountEntries(), 0);
+    }
+  }
+}
+
+TEST_F(SyncTest, AFileSystemThatDoesNotSyncIsNoError) {
+  for (const int error : {EINVAL, ENOTSUP, EROFS}) {
+    OutputFolder out(folder_ / ("run" + std::to_string(error)), OutputFolder::Makers::kOne, kNoted);
+    Write(out.path());
+    sync_errors.assign(5, error);
+    out.Commit();
+    EXPECT_TRUE(fs::exists(out.target() / "in" / "b.csv"));
+  }
+}
+
+TEST_F(SyncTest, AnInterruptedSyncIsTriedAgain) {
+  WriteTextFile(folder_ / "a", "a");
+  sync_errors = {EINTR, EINTR, 0};
+  SyncPath(folder_ / "a", kNoted);
+  EXPECT_EQ(synced.size(), 3U);
+  EXPECT_THAT([&] { SyncPath(folder_ / "none", kNoted); },
+              ThrowsMessage<OutputError>(HasSubstr("none: cannot be written to disk")));
+}
+
+// One that leads out of the folder, or waits for a writer, is nothing that was written there.
+TEST_F(SyncTest, OnlyFilesAndFoldersAreSynced) {
+  fs::create_symlink("/dev/null", folder_ / "link");
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  SyncTree(folder_, kNoted);
+  EXPECT_EQ(synced.size(), 1U);
 }
 
 TEST_F(OutputTest, WhatDeadProcessesLeftIsRemovedAndNothingElse) {

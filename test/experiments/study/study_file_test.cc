@@ -67,6 +67,20 @@ TEST(StudyFileTest, ItsTextSaysTheSame) {
   EXPECT_EQ(Parse(text).question, study.question);
 }
 
+// Lines' ends and keys that are no words too: the text is what the study's folder is read from.
+TEST(StudyFileTest, ItsTextSaysTheSameWhateverStandsInIt) {
+  const StudyFile study = Parse(
+      "study: s\nquestion: \"a\\nb\\tc \\x01 \\\\ d\"\n"
+      "streams: [{name: a, simulate: room_easy, init: rest}]\n"
+      "set: {\"window.a: b\": '-', shared: {'#c': ['', ~, 'true']}}\n");
+  const StudyFile again = Parse(StudyYaml(study));
+  EXPECT_EQ(again.question, "a\nb\tc \x01 \\ d");
+  ASSERT_EQ(again.set.size(), 2U);
+  EXPECT_EQ(again.set[0].key, "window.a: b");
+  EXPECT_EQ(again.set[1].key, "shared.#c");
+  EXPECT_EQ(StudyYaml(again), StudyYaml(study));
+}
+
 TEST(StudyFileTest, OfAKeyThatStandsTwiceTheLaterRules) {
   const StudyFile study =
       Parse(std::string(kSmall) + "set: {window.max_frames: 7, window: {max_frames: 9}}\n");
@@ -111,6 +125,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadStudy{kStudy + "quick: {seeds: none}\n", "seeds: expected A..B"},
         BadStudy{kStudy + "quick: {sedes: 1..2}\n", "sedes: unknown key"},
         BadStudy{kStudy + "config: [no/such.yaml]\n", "folder/no/such.yaml does not exist"},
+        BadStudy{kStudy + "config: [" + std::string(300, 'a') + "]\n", "a does not exist"},
+        BadStudy{kStudy + "published: " + std::string(300, 'a') + "\n", "a is no folder"},
         BadStudy{"study: s\nstreams:\n  - {name: a}\n", "expected one of simulate"},
         BadStudy{"study: s\nstreams:\n  - {name: a, simulate: x, dataset: y}\n",
                  "expected one of simulate"},

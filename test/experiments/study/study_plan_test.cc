@@ -143,6 +143,38 @@ TEST(StudyPlanTest, ThePlansTableReadsBack) {
                                        ",room,msckf,default,none,2\n"));
 }
 
+TEST(StudyPlanTest, APlansTableIsReadStrictly) {
+  const std::string row = "1f,2e,room,msckf,default,none,";
+  const std::vector<StudyRun> runs = ParsePlan(row + "2147483647\n", "p");
+  ASSERT_EQ(runs.size(), 1U);
+  EXPECT_EQ(runs[0].seed, 2147483647);
+  for (const auto& [text, error] : std::vector<std::pair<std::string, std::string>>{
+           {row + "2147483648\n", "p:1: seed: expected the seed of a run"},
+           {row + "-1\n", "seed: expected an integer"},
+           {"1f/../..,2e,room,msckf,default,none,1\n", "id: expected an id of at most 64"},
+           {"1f,,room,msckf,default,none,1\n", "stream_id: expected an id of at most 64"},
+           {"1" + std::string(64, '0') + ",2e,room,msckf,default,none,1\n", "id: expected an id"},
+           {"1f,2e,,msckf,default,none,1\n", "stream: is empty; expected a name"},
+           {"1f,2e,room,msckf,,none,1\n", "setting: is empty; expected a name"},
+           {"#id\n", "has no rows"}}) {
+    EXPECT_THAT([&] { (void)ParsePlan(text, "p"); }, ThrowsMessage<InputError>(HasSubstr(error)));
+  }
+}
+
+TEST(StudyPlanTest, ListsOfRecordingsAreReadStrictly) {
+  const auto with_frames = [](const std::string& frames) {
+    return R"({"a [0]": {"path": "/a", "fingerprint_sha256": "f", "has_images": true, "frames": )" +
+           frames + "}}";
+  };
+  EXPECT_EQ(ParseRecordings(with_frames("2147483647"), "r").at("a [0]").frames, 2147483647);
+  for (const char* frames : {"2147483648", "-1", "1e300", "0.5", "null"}) {
+    EXPECT_THAT([&] { (void)ParseRecordings(with_frames(frames), "r"); },
+                ThrowsMessage<InputError>(HasSubstr("frames: expected a number of frames")));
+  }
+  EXPECT_THAT([] { (void)ParseRecordings("[]", "r"); },
+              ThrowsMessage<InputError>(HasSubstr("no list of recordings")));
+}
+
 TEST(StudyPlanTest, ThePlansYamlGivesTheSamePlanFromAnywhere) {
   const StudyPlan plan = PlanOf(WithStream(
       "{name: a, simulate: room_easy, jitter_px: 0.01, set: {simulation.pixel_noise_px: 0.4}}",
@@ -233,6 +265,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "s.yaml:3: streams.a: duration_s: expected above 0 s"},
         BadPlan{WithStream("{name: MH, dataset: nowhere/MH_01_easy}", "skip_missing: true\n"),
                 "none of the recordings is there"},
+        BadPlan{WithStream("{name: MH, dataset: " + std::string(300, 'a') + "}", ""),
+                "a does not exist; expected a recording"},
         BadPlan{WithStream("{name: MH, dataset: nowhere/MH_01_easy}", ""),
                 "nowhere/MH_01_easy does not exist; expected a recording (--data"}));
 

@@ -10,6 +10,7 @@
 #include "experiments/simulation/monte_carlo.h"
 #include "experiments/study/record_version.h"
 #include "experiments/study/run_evaluation.h"
+#include "experiments/study/study_products.h"
 #include "experiments/study/study_records.h"
 #include "experiments/study/study_stream.h"
 
@@ -150,6 +151,32 @@ TEST_F(StudyRunTest, ACellWithoutARecordHasFailedAndSaysWhy) {
   result = ReadStudy(folder_);
   EXPECT_EQ(result.runs[0].reason, "its process was ended by signal 9");
   EXPECT_THAT(RunsCsv(result), HasSubstr(",room,msckf,default,told wrong,3,1,its process was"));
+}
+
+TEST(StudyRecordFiles, SizesAreNumbersOfBytes) {
+  const auto with_size = [](const std::string& size) {
+    return R"({"id": "1", "determined_by": "", "stream_id": "2", "sha256": {}, "bytes": {"a": )" +
+           size + "}}";
+  };
+  EXPECT_EQ(ParseRecordInfo(with_size("7"), "f").bytes.at("a"), 7U);
+  for (const char* size : {"-1", "1e300", "0.5", "null", "\"7\""}) {
+    EXPECT_THAT([&] { (void)ParseRecordInfo(with_size(size), "f"); },
+                ThrowsMessage<InputError>(HasSubstr("bytes.a: expected a size")));
+  }
+}
+
+// They are removed when a study is done again.
+TEST(StudyRecordFiles, AProductLiesWithinTheStudysFolder) {
+  const auto with_product = [](const std::string& name) {
+    return R"({"products": {")" + name + R"(": "00"}})";
+  };
+  EXPECT_EQ(ParseProducts(with_product("figures/a.csv"), "f").size(), 1U);
+  EXPECT_TRUE(ParseProducts("{}", "f").empty());
+  for (const char* name : {"/etc/passwd", "../a", "figures/../../a", "", ".", "figures/"}) {
+    EXPECT_THAT([&] { (void)ParseProducts(with_product(name), "f"); },
+                ThrowsMessage<InputError>(HasSubstr("expected a file within the folder")));
+  }
+  EXPECT_THROW((void)ParseProducts("[1]", "f"), InputError);
 }
 
 }  // namespace

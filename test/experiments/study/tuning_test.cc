@@ -180,6 +180,32 @@ TEST(TuningTest, TheRatioFollowsTheMetricsDirection) {
   EXPECT_NEAR(ratio("nees.pose", 6.0, 1.0), 6.0, 1e-12);
 }
 
+TEST(TuningTest, ASearchsFolderThatContradictsItselfIsRefused) {
+  const TuningReport report =
+      ParseTuningYaml(TuningYaml(ParseTuning(TuningText("11..12", "2", kSearch))), "t.yaml");
+  EXPECT_EQ(report.objective, "ate.position_m");
+  EXPECT_EQ(report.seeds.last, 9);
+  StudyFolder folder;
+  folder.study = ParseStudyFile(
+      "study: s\nstreams: [{name: room, simulate: room_easy}]\nestimators: [msckf]\n"
+      "settings: [{name: default}, {name: a}]\n",
+      "s.yaml", false);
+  folder.result.runs = {RunOf("default", 1, 0.1), RunOf("a", 1, 0.2)};
+  EXPECT_THAT(TuningTexts(folder, report), SizeIs(3));
+  StudyFolder with_more = folder;
+  with_more.result.runs.push_back(RunOf("b", 1, 0.2));
+  EXPECT_THAT([&] { (void)TuningTexts(with_more, report); },
+              ThrowsMessage<InputError>(HasSubstr("settings: has no 'b', which plan.csv has")));
+  folder.study.estimators.push_back("window");
+  EXPECT_THAT([&] { (void)TuningTexts(folder, report); },
+              ThrowsMessage<InputError>(HasSubstr("has window, of which plan.csv has no run")));
+  for (const char* yaml : {"objective: a\nreport_seeds: 1..2\n", "objective: ate.position_m\n",
+                           "objective: ate.position_m\nreport_seeds: 2..1\n",
+                           "objective: ate.position_m\nreport_seeds: 1..2\nreport_streams: 3\n"}) {
+    EXPECT_THROW((void)ParseTuningYaml(yaml, "t.yaml"), InputError) << yaml;
+  }
+}
+
 TEST(TuningTest, ARunWithoutTheObjectiveHasNotFailed) {
   StudyResult result;
   result.runs = {WithMetric("default", "calibration.t_d.error", 0.1), RunOf("a", 1, 0.1)};
