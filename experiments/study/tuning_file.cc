@@ -177,11 +177,14 @@ void CheckSize(const std::vector<TuningDimension>& dimensions, const std::string
 
 /// The trials' changes of one estimator, the defaults left out.
 std::vector<std::vector<StudyKey>> DrawTrials(const std::vector<TuningDimension>& dimensions,
-                                              std::size_t shared, int trials) {
+                                              std::size_t shared, int trials,
+                                              const std::string& estimator,
+                                              const std::string& file) {
   std::set<std::vector<int>> drawn;
   std::vector<std::vector<StudyKey>> changes;
   for (int trial = 1; trial <= trials; ++trial) {
     std::vector<int> choice(dimensions.size());
+    bool is_new = false;
     // Only the estimator's own values are drawn again, so that the shared ones stay shared; where
     // there are none of its own, all are, for every estimator alike.
     for (int draw = 0; draw < kMostDraws; ++draw) {
@@ -192,7 +195,14 @@ std::vector<std::vector<StudyKey>> DrawTrials(const std::vector<TuningDimension>
                           (redrawn ? static_cast<std::uint64_t>(draw) * 1'000'000'000 : 0));
         choice[d] = random.Index(static_cast<int>(dimensions[d].values.size()));
       }
-      if (drawn.insert(choice).second) break;
+      is_new = drawn.insert(choice).second;
+      if (is_new) break;
+    }
+    if (!is_new) {
+      throw InputError(file, 0, "budget",
+                       estimator + " has no combination left for trial " + std::to_string(trial) +
+                           ", whose shared values are drawn; expected a smaller budget, or more "
+                           "values of its own");
     }
     std::vector<StudyKey>& keys = changes.emplace_back();
     for (std::size_t d = 0; d < dimensions.size(); ++d) {
@@ -271,7 +281,7 @@ TuningFile ParseTuningFile(std::string_view yaml, const fs::path& path, bool qui
   for (const std::string& estimator : study.estimators) {
     const std::vector<TuningDimension> dimensions = DimensionsOf(search, estimator);
     CheckSize(dimensions, estimator, result.budget, file);
-    const auto trials = DrawTrials(dimensions, shared_count, result.budget - 1);
+    const auto trials = DrawTrials(dimensions, shared_count, result.budget - 1, estimator, file);
     for (std::size_t i = 0; i < trials.size(); ++i)
       study.settings[i + 1].only[estimator] = trials[i];
   }

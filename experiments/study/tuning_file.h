@@ -32,8 +32,9 @@ struct TuningFile {
 /// Bergstra and Bengio, JMLR 2012), without drawing a combination twice. What the estimators search
 /// together (`shared` keys) has the same values in the same trial. The same file gives the same
 /// trials. Throws InputError as ParseStudyFile does, and where an estimator has fewer combinations
-/// than the budget, the objective is no metric that tells better from worse, the seeds overlap, or
-/// the report has a recording (or a simulation of one seed) that the search has too.
+/// than the budget or none left for a trial's shared values, the objective is no metric that tells
+/// better from worse, the seeds overlap, or the report has a recording (or a simulation of one
+/// seed) that the search has too.
 [[nodiscard]] TuningFile ParseTuningFile(std::string_view yaml, const std::filesystem::path& file,
                                          bool quick);
 

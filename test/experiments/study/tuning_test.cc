@@ -126,6 +126,11 @@ INSTANTIATE_TEST_SUITE_P(
                   "objective: no metric is called 'ate.position'; "
                   "did you mean 'ate.position_m'?"},
         BadTuning{WithObjective("nees.calibration"), "does not tell which of two values"},
+        BadTuning{TuningText("11..12", "20",
+                             "  shared: {shared.pixel_noise_px: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]}\n"
+                             "  msckf: {msckf.max_clones: [5, 8]}\n"
+                             "  window: {window.max_frames: [5, 8]}\n"),
+                  "budget: msckf has no combination left for trial"},
         BadTuning{TuningText("11..12", "4", kSearch) + "sed: 3\n", "sed: unknown key"}));
 
 StudyRun RunOf(const std::string& setting, int seed, double ate, bool failed = false,
