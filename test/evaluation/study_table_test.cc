@@ -459,7 +459,8 @@ TEST(StudyTable, OfManyArmsSentencesNameThoseOfWhichTheySaySomething) {
   const auto tables = MakeStudyTables(study, options);
   const std::string nees = TableNamed(tables, "nees").verdict;
   EXPECT_THAT(nees, HasSubstr("The covariance of window"));
-  EXPECT_THAT(nees, HasSubstr(".\nThe covariances of the other 7 are refuted in none of 21 tests."));
+  EXPECT_THAT(nees,
+              HasSubstr(".\nThe covariances of the other 7 are refuted in none of 21 tests."));
   EXPECT_EQ(TableNamed(tables, "sensitivity").verdict,
             "Of all measures of the position none says who is better in 4 of the pairs.");
 }
