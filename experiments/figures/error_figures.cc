@@ -9,6 +9,9 @@
 namespace duet {
 namespace {
 
+/// RMSEs that differ by more than this factor are shown on a logarithmic axis.
+constexpr double kFarApart = 30.0;
+
 constexpr std::array<const char*, 3> kAxisNames = {"x", "y", "z"};
 
 // Three panels, one an axis: what is true minus estimate, and the lines at +-3 sigma.
@@ -97,10 +100,7 @@ Figure RmseOverRunsFigure(const FigureInput& input) {
     }
     const Look look = LookOfEstimator(estimators[n], n);
     const auto add = [&](const std::vector<double>& values, Panel* panel) {
-      Look thin = look;
-      thin.width_pt = 0.5;
-      panel->series.push_back(LineSeries(estimators[n] + " line", "", thin, at, values));
-      Look points = look;
+      Look points = look;  // without lines: seeds have no order
       points.width_pt = 1.2;
       panel->series.push_back(PointSeries(estimators[n], estimators[n], points, at, values));
     };
@@ -110,9 +110,21 @@ Figure RmseOverRunsFigure(const FigureInput& input) {
   for (Panel* panel : {&position, &orientation}) {
     double last = 1.0;
     double first = 1e300;
+    double largest = 0.0;
+    double smallest = 1e300;
     for (const Series& series : panel->series) {
       for (const double at : series.columns[0]) last = std::max(last, at);
       for (const double at : series.columns[0]) first = std::min(first, at);
+      for (const double rmse : series.columns[1]) {
+        if (!(rmse > 0.0)) continue;
+        largest = std::max(largest, rmse);
+        smallest = std::min(smallest, rmse);
+      }
+    }
+    // One that is lost must not hide the others.
+    if (largest > kFarApart * smallest) {
+      panel->y.low.reset();
+      panel->y.logarithmic = true;
     }
     panel->x.low = first - 0.5;
     panel->x.high = last + 0.5;

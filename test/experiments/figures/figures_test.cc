@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/support/input_error.h"
+#include "common/support/numeric_text.h"
 #include "common/support/text_file.h"
 #include "evaluation/chi_squared.h"
 #include "experiments/figures/figure_makers.h"
@@ -183,6 +184,27 @@ TEST(Figures, PlainRunsOfOneEstimatorAreToldApart) {
   const Figure nees = ComposeFigure("nees_over_time", input);
   EXPECT_EQ(nees.sources.size(), 1u);
   EXPECT_EQ(nees.panels[0].series[1].legend, "msckf, 1 run");
+}
+
+// A run that is lost must not hide the others.
+TEST(Figures, RmsesFarApartAreOnALogarithmicAxis) {
+  const FiguresFolder folder;
+  WriteStudy(folder / "study");
+  const auto position_axis = [&](double lost_m) {
+    for (const auto& run : std::filesystem::directory_iterator(folder / "study/runs")) {
+      const bool lost = run.path().filename() == "msckf2";
+      WriteTextFile(run.path() / "evaluation.json",
+                    "{\"metrics\": {\"ate.position_m\": " + FormatNumber(lost ? lost_m : 0.02) +
+                        ", \"ate.orientation_deg\": 2.5}}\n");
+    }
+    const Figure figure = ComposeFigure("rmse_over_runs", {.folders = {folder / "study"}});
+    EXPECT_FALSE(figure.panels[1].y.logarithmic);
+    EXPECT_EQ(figure.panels[1].y.low, 0.0);
+    return figure.panels[0].y;
+  };
+  EXPECT_FALSE(position_axis(0.5).logarithmic);
+  EXPECT_TRUE(position_axis(16.0).logarithmic);
+  EXPECT_FALSE(position_axis(16.0).low.has_value());
 }
 
 TEST(Figures, RmseIsTheStudysOwnWhereItHasBeenEvaluated) {
