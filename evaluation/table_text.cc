@@ -176,7 +176,7 @@ std::vector<std::string> SentencesOfVerdict(const std::string& verdict) {
 
 std::string TableText(const StudyTable& table) {
   const std::vector<std::size_t> width = ColumnWidths(table);
-  std::string text = table.title + "\n\n";
+  std::string text = ParagraphText(table.title) + "\n";
   const std::vector<ColumnGroup> groups = ColumnGroups(table);
   if (!groups.empty()) {
     std::string line;

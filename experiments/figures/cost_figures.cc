@@ -213,6 +213,12 @@ Figure CostAgainstAccuracyFigure(const FigureInput& input) {
   }
   NumberPlacer placer(panel.x, panel.y, 70.0, panel.height_mm);
   for (const CostPoint& point : everything) placer.AddPoint(point.frame_ms, point.position_m);
+  const auto place_of_stream = [&runs](const CostPoint& point) {
+    return std::find_if(
+               runs.begin(), runs.end(),
+               [&point](const FigureRun& run) { return run.where.stream == point.stream; }) -
+           runs.begin();
+  };
   std::vector<std::string> settings;
   Series numbers = TextSeries("setting");
   Series front = PointSeries("front", "no point is cheaper and better",
@@ -221,9 +227,10 @@ Figure CostAgainstAccuracyFigure(const FigureInput& input) {
     std::vector<CostPoint> sorted = points[n];
     std::sort(sorted.begin(), sorted.end(),
               [](const CostPoint& a, const CostPoint& b) { return a.frame_ms < b.frame_ms; });
-    // A line joins the settings on one stream.
-    std::stable_sort(sorted.begin(), sorted.end(),
-                     [](const CostPoint& a, const CostPoint& b) { return a.stream < b.stream; });
+    // A line joins the settings on one stream; streams as the study has them.
+    std::stable_sort(sorted.begin(), sorted.end(), [&](const CostPoint& a, const CostPoint& b) {
+      return place_of_stream(a) < place_of_stream(b);
+    });
     std::vector<double> line_x, line_y;
     std::vector<double> x, y;
     for (std::size_t i = 1; i < sorted.size(); ++i) {
@@ -266,7 +273,7 @@ Figure CostAgainstAccuracyFigure(const FigureInput& input) {
     std::string note = "Settings:";
     for (std::size_t i = 0; i < settings.size(); ++i) {
       note +=
-          " " + std::to_string(i + 1) + " " + settings[i] + (i + 1 < settings.size() ? "," : ".");
+          " " + std::to_string(i + 1) + ": " + settings[i] + (i + 1 < settings.size() ? "," : ".");
     }
     figure.notes.push_back(note);
   }

@@ -134,7 +134,7 @@ TEST(Figures, CostIsComparedOnStreamsThatDifferInFeaturesAndWithoutSurvivors) {
                 "  - {name: many, simulate: room_easy, set: {simulation.max_tracks: 160}}\n"
                 "  - {name: hall, simulate: room_easy, set: {simulation.duration_s: 9}}\n");
   const Figure figure = ComposeFigure("cost_against_accuracy", {.folders = {folder / "study"}});
-  EXPECT_THAT(figure.notes, Contains("Settings: 1 default on few, 2 default on many."));
+  EXPECT_THAT(figure.notes, Contains("Settings: 1: default on few, 2: default on many."));
   EXPECT_THAT(figure.notes, Contains(HasSubstr("1 of 4 runs of msckf failed: left out")));
   EXPECT_EQ(figure.notes.back(), "Drawn: 2 of 3 streams, 2 seeds.");
   const auto front = std::find_if(figure.panels[0].series.begin(), figure.panels[0].series.end(),

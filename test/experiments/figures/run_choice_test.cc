@@ -120,8 +120,8 @@ TEST_F(RunChoiceTest, CostIsDrawnOfTheSettingsChosen) {
   const auto notes = [&](const RunChoice& choice) {
     return ComposeFigure("cost_against_accuracy", Choosing(choice)).notes;
   };
-  EXPECT_THAT(notes({}), Contains("Settings: 1 default, 2 slow."));
-  EXPECT_THAT(notes({.settings = {"default", "slow"}}), Contains("Settings: 1 default, 2 slow."));
+  EXPECT_THAT(notes({}), Contains("Settings: 1: default, 2: slow."));
+  EXPECT_THAT(notes({.settings = {"default", "slow"}}), Contains("Settings: 1: default, 2: slow."));
   EXPECT_THAT(notes({.settings = {"slow"}}),
               Contains("Drawn: stream room (of 2), setting slow (of 2), 2 seeds."));
 }
