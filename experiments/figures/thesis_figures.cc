@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "common/dataset/recording.h"
 #include "common/support/input_error.h"
@@ -26,6 +27,10 @@ constexpr double kRestRate = 0.15;            // rad/s
 constexpr double kRestAccelerationOff = 1.0;  // m/s^2
 constexpr double kGravity = 9.81;             // m/s^2
 constexpr std::size_t kFewestAtRest = 100;
+// As long as it rests it is as it was in the first window: its mean rate within a spread of it, and
+// not twice as widely spread. (What sets off slowly passes the bounds above for seconds.)
+constexpr double kLeastGyroSigma = 1e-4;  // rad/s, of a noiseless one
+constexpr double kWiderSpread = 2.0;
 
 Eigen::Vector3d MeanOf(const std::vector<ImuSample>& imu, std::size_t begin, std::size_t end,
                        Eigen::Vector3d ImuSample::*member) {
@@ -44,6 +49,28 @@ double SigmaAlong(const std::vector<ImuSample>& imu, std::size_t begin, std::siz
   return std::sqrt(squares.maxCoeff() / static_cast<double>(end - begin));
 }
 
+/// A window at rest: the mean rate and its spread.
+struct RestWindow {
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  double sigma = 0.0;
+};
+
+std::optional<RestWindow> RestWindowAt(const std::vector<ImuSample>& imu, std::size_t begin,
+                                       std::size_t end) {
+  const RestWindow window = {MeanOf(imu, begin, end, &ImuSample::omega_m),
+                             SigmaAlong(imu, begin, end, &ImuSample::omega_m)};
+  const bool rests =
+      window.sigma < kRestGyroSigma && window.rate.norm() < kRestRate &&
+      SigmaAlong(imu, begin, end, &ImuSample::a_m) < kRestAccelerometerSigma &&
+      std::abs(MeanOf(imu, begin, end, &ImuSample::a_m).norm() - kGravity) < kRestAccelerationOff;
+  return rests ? std::optional(window) : std::nullopt;
+}
+
+bool IsOfTheSameRest(const RestWindow& window, const RestWindow& first) {
+  const double sigma = std::max(first.sigma, kLeastGyroSigma);
+  return (window.rate - first.rate).norm() < sigma && window.sigma < kWiderSpread * sigma;
+}
+
 // The longest run of windows at rest.
 std::pair<std::size_t, std::size_t> LongestRest(const std::vector<ImuSample>& imu) {
   const double step_s = SecondsBetween(imu.front().timestamp, imu.back().timestamp) /
@@ -52,17 +79,14 @@ std::pair<std::size_t, std::size_t> LongestRest(const std::vector<ImuSample>& im
       std::max<std::size_t>(2, static_cast<std::size_t>(kRestWindowSeconds / step_s));
   std::pair<std::size_t, std::size_t> longest = {0, 0};
   std::size_t begin = 0;
+  std::optional<RestWindow> first;
   for (std::size_t i = 0; i + window <= imu.size(); i += window) {
-    const bool rest = SigmaAlong(imu, i, i + window, &ImuSample::omega_m) < kRestGyroSigma &&
-                      SigmaAlong(imu, i, i + window, &ImuSample::a_m) < kRestAccelerometerSigma &&
-                      MeanOf(imu, i, i + window, &ImuSample::omega_m).norm() < kRestRate &&
-                      std::abs(MeanOf(imu, i, i + window, &ImuSample::a_m).norm() - kGravity) <
-                          kRestAccelerationOff;
-    if (!rest) {
-      begin = i + window;
-    } else if (i + window - begin > longest.second - longest.first) {
-      longest = {begin, i + window};
+    const std::optional<RestWindow> here = RestWindowAt(imu, i, i + window);
+    if (!here || !first || !IsOfTheSameRest(*here, *first)) {
+      begin = i;
+      first = here;
     }
+    if (here && i + window - begin > longest.second - longest.first) longest = {begin, i + window};
   }
   return longest;
 }

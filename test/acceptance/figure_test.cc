@@ -66,6 +66,15 @@ TEST_F(FigureTest, ATurningGyroscopeIsNotAtRestAndStrayOptionsAreRefused) {
       EXPECT_THAT(drawn.err, HasSubstr("does not rest"));
     }
   }
+  // What sets off slowly is not at rest any more.
+  const std::string recording = *folder_ / "setting_off";
+  ASSERT_EQ(RunDuet({"simulate", "--preset", "room_rest", "--set", "simulation.duration_s=6",
+                     "--set", "simulation.max_tracks=20", "--out", recording})
+                .status,
+            0);
+  const std::string folder = *folder_ / "rest_of_setting_off";
+  ASSERT_EQ(RunDuet({"figure", "thesis_3_2", "--runs", recording, "--out", folder}).status, 0);
+  EXPECT_THAT(ReadTextFile(folder + "/thesis_3_2.csv"), HasSubstr("400 samples at rest, 2.0 s"));
   const std::string out = *folder_ / "stray";
   EXPECT_THAT(RunDuet({"figure", "thesis_3_8", "--runs", "nowhere", "--out", out}).err,
               HasSubstr("nowhere: does not exist"));
