@@ -140,6 +140,8 @@ Report DescribeStudy(const fs::path& folder) {
   report.question = study.result.question;
   report.foot = study.result.foot;
   report.tables = MakeStudyTables(study.result, TableOptionsOf(study));
+  report.overview = StudySummaryTable(study.result, study.study.metrics, {});
+  report.overview.foot.resize(1);  // the rest stands at the page's foot
   report.summary.push_back(GridSentence(study.result));
   for (const StudyTable& table : report.tables) {
     for (const std::string& sentence : SentencesOfVerdict(table.verdict)) {

@@ -41,7 +41,8 @@ struct Report {
   std::string kind;  ///< "study", "comparison", "run"
   std::string title;
   std::string question;
-  std::vector<std::string> summary;  ///< sentences
+  std::vector<std::string> summary;  ///< sentences, the first of them the most important
+  StudyTable overview;               ///< of a study: all of it in one table; else without columns
   std::vector<StudyTable> tables;
   std::vector<ReportText> texts;
   std::vector<ReportFigure> figures;

@@ -11,6 +11,7 @@ namespace duet {
 namespace {
 
 constexpr std::size_t kShortHash = 16;
+constexpr std::size_t kSentencesShown = 7;  ///< of the summary, before a reader asks for more
 
 std::string Element(const std::string& tag, std::string_view text, const std::string& more = "") {
   return "<" + tag + (more.empty() ? "" : " " + more) + ">" + EscapeHtml(text) + "</" + tag + ">\n";
@@ -56,10 +57,24 @@ std::string PageHeader(const Report& report) {
   return html + "</nav>\n</header>\n";
 }
 
+// Sentences [begin, end) as a list.
+std::string SentenceList(const Report& report, std::size_t begin, std::size_t end) {
+  std::string html = "<ul class=\"summary\">\n";
+  for (std::size_t i = begin; i < end; ++i) html += Element("li", report.summary[i]);
+  return html + "</ul>\n";
+}
+
 std::string Summary(const Report& report) {
-  std::string html = SectionStart("summary", "Summary") + "<ul class=\"summary\">\n";
-  for (const std::string& sentence : report.summary) html += Element("li", sentence);
-  return html + "</ul>\n</section>\n";
+  const std::size_t count = report.summary.size();
+  // One more is no longer than the line that would hide it.
+  const std::size_t shown = count > kSentencesShown + 1 ? kSentencesShown : count;
+  std::string html = SectionStart("summary", "Summary") + SentenceList(report, 0, shown);
+  if (shown < count) {
+    html += "<details><summary>" + std::to_string(count - shown) + " more sentences</summary>\n" +
+            SentenceList(report, shown, count) + "</details>\n";
+  }
+  if (!report.overview.columns.empty()) html += TableHtml(report.overview);
+  return html + "</section>\n";
 }
 
 std::string Explorer() {

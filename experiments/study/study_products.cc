@@ -71,7 +71,8 @@ std::vector<std::pair<std::string, std::string>> StudyTexts(const StudyFolder& f
   const std::vector<StudyTable> tables = MakeStudyTables(folder.result, TableOptionsOf(folder));
   std::vector<std::pair<std::string, std::string>> texts = TableTexts(tables);
   texts.emplace_back("runs.csv", RunsCsv(folder.result));
-  texts.emplace_back("summary.txt", StudySummaryText(folder.result, folder.study.metrics, tables));
+  texts.emplace_back("summary.txt",
+                     TableText(StudySummaryTable(folder.result, folder.study.metrics, tables)));
   if (IsTuningFolder(folder.path)) {
     for (auto& text : TuningTexts(folder)) texts.push_back(std::move(text));
   }

@@ -37,9 +37,9 @@ struct StudyFolder {
 [[nodiscard]] std::string PlanCsv(const StudyPlan& plan);
 /// runs.csv (docs/formats.md).
 [[nodiscard]] std::string RunsCsv(const StudyResult& result);
-/// Medians over the runs that did not fail, for the terminal: one row for each stream, estimator,
-/// setting and perturbation; and what `tables` say. `metrics`: empty for a choice.
-[[nodiscard]] std::string StudySummaryText(const StudyResult& result,
+/// Medians over the runs that did not fail: one row for each stream, estimator, setting and
+/// perturbation; and what `tables` say. `metrics`: empty for a choice.
+[[nodiscard]] StudyTable StudySummaryTable(const StudyResult& result,
                                            const std::vector<std::string>& metrics,
                                            const std::vector<StudyTable>& tables);
 

@@ -1,15 +1,15 @@
-// StudySummaryText: a study's numbers in one table.
+// StudySummaryTable: a study's numbers in one table.
 
 #include "evaluation/study_table.h"
 #include "experiments/study/study_records.h"
 
 namespace duet {
 
-std::string StudySummaryText(const StudyResult& result, const std::vector<std::string>& metrics,
+StudyTable StudySummaryTable(const StudyResult& result, const std::vector<std::string>& metrics,
                              const std::vector<StudyTable>& tables) {
   const std::vector<std::string> choice = {"ate.position_m", "ate.orientation_deg",
                                            "coverage_share", "frame_ms.median"};
-  return TableText(SummaryTable(result, metrics.empty() ? choice : metrics, tables));
+  return SummaryTable(result, metrics.empty() ? choice : metrics, tables);
 }
 
 }  // namespace duet

@@ -30,6 +30,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     FillIn(&folder.result, report.objective);
     for (const auto& [name, made] : duet::TuningTexts(folder, report)) CHECK(!made.empty()) << name;
     CHECK(!duet::RunsCsv(folder.result).empty());
-    CHECK(!duet::StudySummaryText(folder.result, folder.study.metrics).empty());
+    CHECK(!duet::StudySummaryTable(folder.result, folder.study.metrics, {}).rows.empty());
   });
 }

@@ -60,6 +60,7 @@ Report ReportOf(int runs, const std::string& text) {
   report.kind = "study";
   report.title = report.question = text;
   report.summary = report.foot = {text};
+  report.overview = SmallTable(text);
   report.tables = {SmallTable(text)};
   report.texts = {{text, text}};
   report.figures = {{text, text, "image/svg+xml", "<svg>" + std::string(60'000, 'x') + "</svg>"}};
@@ -150,6 +151,21 @@ TEST(ReportPageTest, MarksAndGroupsOfTables) {
 }
 
 // The bundle in the program is the committed one, whose checksums stand beside it.
+// The first answer the question; a grid of many cells has dozens.
+TEST(ReportPageTest, OfManySentencesTheFirstAreShownAndTheOthersOnDemand) {
+  Report report = ReportOf(1, "x");
+  report.summary.clear();
+  for (int i = 1; i <= 9; ++i) report.summary.push_back("Sentence " + std::to_string(i) + ".");
+  const std::string page = ReportPage(report);
+  const std::size_t more = page.find("<summary>2 more sentences</summary>");
+  ASSERT_NE(more, std::string::npos);
+  EXPECT_LT(page.find("Sentence 7."), more);
+  EXPECT_GT(page.find("Sentence 8."), more);
+  EXPECT_GT(page.find("Sentence 9."), more);
+  report.summary.pop_back();
+  EXPECT_THAT(ReportPage(report), Not(HasSubstr("more sentences")));
+}
+
 TEST(ReportPageTest, BundleHasItsChecksums) {
   const std::filesystem::path dist =
       std::filesystem::path(DUET_SOURCE) / "experiments/report/web/dist";
