@@ -74,7 +74,7 @@ TEST_F(FigureTest, ATurningGyroscopeIsNotAtRestAndStrayOptionsAreRefused) {
             0);
   const std::string folder = *folder_ / "rest_of_setting_off";
   ASSERT_EQ(RunDuet({"figure", "thesis_3_2", "--runs", recording, "--out", folder}).status, 0);
-  EXPECT_THAT(ReadTextFile(folder + "/thesis_3_2.csv"), HasSubstr("400 samples at rest, 2.0 s"));
+  EXPECT_THAT(ReadFile(folder + "/thesis_3_2.csv"), HasSubstr("400 samples at rest, 2.0 s"));
   const std::string out = *folder_ / "stray";
   EXPECT_THAT(RunDuet({"figure", "thesis_3_8", "--runs", "nowhere", "--out", out}).err,
               HasSubstr("nowhere: does not exist"));
