@@ -129,8 +129,8 @@ Figure RmseOverRunsFigure(const FigureInput& input) {
     panel->x.low = first - 0.5;
     panel->x.high = last + 0.5;
     if (last - first < 10.0) {
-      for (double at = first; at <= last; at += 1.0) {
-        panel->x.ticks.emplace_back(at, std::to_string(static_cast<int>(at)));
+      for (int at = static_cast<int>(first); at <= static_cast<int>(last); ++at) {
+        panel->x.ticks.emplace_back(at, std::to_string(at));
       }
     }
   }

@@ -52,7 +52,7 @@ std::string KnownInstead(const RunCoordinate& coordinate, const std::string& nam
     const auto [least, most] = std::minmax_element(known.begin(), known.end(), smaller);
     return "; the seeds are " + *least + (*least == *most ? "" : " to " + *most);
   }
-  const std::string meant = DidYouMean(name, known);
+  std::string meant = DidYouMean(name, known);
   if (!meant.empty()) return meant;
   constexpr std::size_t kMostNamed = 8;
   std::string names;

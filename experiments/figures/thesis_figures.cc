@@ -108,7 +108,7 @@ Recording ImuRecordingOf(const FigureInput& input, std::string* source) {
   }
   if (!dataset.empty()) {
     RequireNoChoice(input.choice, "a recording");
-    const Recording recording = LoadRecording(dataset, imu_alone);
+    Recording recording = LoadRecording(dataset, imu_alone);
     *source = dataset.string() + " (" + recording.fingerprint.substr(0, 16) + ")";
     return recording;
   }
@@ -148,17 +148,18 @@ Figure Thesis32Figure(const FigureInput& input) {
     const double sigma = std::sqrt(squares / static_cast<double>(values.size() - 1));
     // Bins of 0.4 sigma out to 4 sigma; further samples count in the last.
     constexpr int kBins = 20;
+    constexpr int kMiddle = kBins / 2;
     constexpr double kBin = 0.4;
     std::vector<double> counts(kBins, 0.0);
     for (const double v : values) {
-      const int bin = static_cast<int>(std::floor((v - mean) / sigma / kBin)) + kBins / 2;
+      const int bin = static_cast<int>(std::floor((v - mean) / sigma / kBin)) + kMiddle;
       counts[static_cast<std::size_t>(std::clamp(bin, 0, kBins - 1))] += 1.0;
     }
     Series bars = BarSeries(std::string("gyro ") + axes[axis], "samples",
                             {.colour = kSkyBlue, .opacity = 0.6});
     const double scale = 1.0 / (static_cast<double>(values.size()) * kBin * sigma);
     for (int i = 0; i < kBins; ++i) {
-      const double from = mean + (i - kBins / 2) * kBin * sigma;
+      const double from = mean + (i - kMiddle) * kBin * sigma;
       AddBar(from, from + kBin * sigma, 0.0, counts[static_cast<std::size_t>(i)] * scale, &bars);
     }
     std::vector<double> x, density;

@@ -90,7 +90,7 @@ class StrictMap {
 
 /// Names stand in tables and on command lines.
 std::string CheckedName(StrictMap* map, const std::string& key) {
-  const std::string name = map->Text(key);
+  std::string name = map->Text(key);
   const auto fits = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
            std::string_view(" _-+.=/()<>%").find(c) != std::string_view::npos;

@@ -184,7 +184,7 @@ void AddFoot(const StudyFolder& folder, std::vector<std::string>* foot) {
 /// What an id is: it names a folder of runs/ or streams/, and nothing outside of them.
 std::string FolderName(const CsvReader& reader, int column) {
   constexpr std::size_t kLongest = 64;
-  const std::string id(reader.Text(column));
+  std::string id(reader.Text(column));
   const bool fits = std::all_of(id.begin(), id.end(), [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
   });

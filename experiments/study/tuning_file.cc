@@ -55,7 +55,7 @@ SeedRange ReadReportSeeds(const YamlNode& root, const std::string& file, const S
 
 std::string ReadObjective(const YamlNode& root, const std::string& file) {
   const YamlNode& node = Required(root, "objective", file, "a metric");
-  const std::string key = AsText(node).value_or("");
+  std::string key = AsText(node).value_or("");
   const std::optional<Metric> metric = FindMetric(key);
   if (!metric) {
     throw InputError(file, node.line, "objective",
