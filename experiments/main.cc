@@ -36,6 +36,8 @@ int Run(int argc, char** argv) {
 }  // namespace duet
 
 int main(int argc, char** argv) {
+  // Into a file too, a table's lines and what is said on stderr keep their order, and none is torn.
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   duet::InitializeLogging(argv[0]);
   duet::InstallInterruptHandler();
   return duet::Run(argc, argv);
